@@ -1,0 +1,1 @@
+//! Whole-chain and accuracy tests live in `tests/`.
