@@ -1,5 +1,10 @@
 //! Triangle meshes of wetted surfaces: read, judge, and find the edges a wake leaves from.
 
+pub mod shapes;
 mod surface;
+mod topology;
+pub mod trailing_edge;
 
 pub use surface::{CurveGroup, Frame, SurfaceGroup, SurfaceMode, TriMesh, Vec3};
+pub use topology::Topology;
+pub use trailing_edge::TrailingEdge;

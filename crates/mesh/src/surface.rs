@@ -50,6 +50,49 @@ impl TriMesh {
         let [a, b, c] = self.corners(triangle);
         0.5 * (b - a).cross(&(c - a))
     }
+
+    /// Total area, m².
+    pub fn area(&self) -> f64 {
+        (0..self.triangles.len())
+            .map(|t| self.area_vector(t).norm())
+            .sum()
+    }
+
+    /// Enclosed volume, m³: positive when the normals point outward.
+    ///
+    /// $$ V = \tfrac16 \sum (\mathbf a \times \mathbf b)\cdot\mathbf c $$
+    ///
+    /// with the corners taken from the middle of the bounding box, so that a
+    /// body far from the origin loses no digits. Meaningless when the surface
+    /// is open.
+    pub fn volume(&self) -> f64 {
+        let Some((low, high)) = self.bounds() else {
+            return 0.0;
+        };
+        let middle = 0.5 * (low + high);
+        let tetrahedron = |t| {
+            let [a, b, c] = self.corners(t).map(|p| p - middle);
+            a.cross(&b).dot(&c) / 6.0
+        };
+        (0..self.triangles.len()).map(tetrahedron).sum()
+    }
+
+    /// Lowest and highest corner of the bounding box; `None` without vertices.
+    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        let first = *self.vertices.first()?;
+        let fold = |(low, high): (Vec3, Vec3), p: &Vec3| (low.inf(p), high.sup(p));
+        Some(self.vertices.iter().fold((first, first), fold))
+    }
+
+    /// The surface group of that name.
+    pub fn surface(&self, name: &str) -> Option<&SurfaceGroup> {
+        self.surfaces.iter().find(|group| group.name == name)
+    }
+
+    /// The curve group of that name.
+    pub fn curve(&self, name: &str) -> Option<&CurveGroup> {
+        self.curves.iter().find(|group| group.name == name)
+    }
 }
 
 /// The axes in which a mode's displacement is counted, which decides its

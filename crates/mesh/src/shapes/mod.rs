@@ -1,0 +1,8 @@
+//! Analytic bodies as meshes: spheres, ellipsoids and wings of NACA section.
+
+mod sphere;
+mod unstructured;
+mod wing;
+
+pub use sphere::{ellipsoid, icosphere};
+pub use wing::{Extent, NacaWing, ShapeError, Tip, naca_half_thickness};
