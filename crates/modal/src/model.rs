@@ -1,0 +1,256 @@
+//! The structure as the eigenproblem needs it: rigid-body properties, and
+//! elastic modes of unit generalised mass in SI units and mesh axes.
+
+use crate::error::ReadError;
+use crate::format::Format;
+use crate::read::read_structure;
+use crate::result::{ModalResult, Mode};
+use crate::rigid::{Inertia, RigidBody, RigidBodyError};
+use crate::rigid_fit::{RecoveredBody, RigidSurvey, survey};
+use crate::units::{Axes, Units};
+use fladder_mesh::Vec3;
+use std::f64::consts::TAU;
+use std::path::PathBuf;
+
+/// Translational participation over √mass above which an elastic mode is not
+/// orthogonal to rigid motion: modes of one free body stay near 1e-3.
+pub const PARTICIPATION_LIMIT: f64 = 1e-2;
+
+/// Where a structure comes from and how it is to be taken.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StructureSettings {
+    /// Result file.
+    pub file: PathBuf,
+    /// File with nodes, elements and sets.
+    pub geometry: Option<PathBuf>,
+    /// Overrides the format told from the content.
+    pub format: Option<Format>,
+    /// Units of the files.
+    pub units: Units,
+    /// Directions of the structure's axes in mesh axes.
+    pub axes: Axes,
+    /// The structure's origin in mesh axes, metres.
+    pub origin: Vec3,
+    /// The files hold half of a symmetric structure.
+    pub half: bool,
+    /// First and last elastic mode, counted from 1; all where left out.
+    pub modes: Option<[usize; 2]>,
+    /// Mass properties that override those of the file.
+    pub rigid_body: RigidBodySettings,
+}
+
+/// Mass properties of the whole aircraft as far as the case gives them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigidBodySettings {
+    /// Mass, kg.
+    pub mass: Option<f64>,
+    /// Centre of mass in mesh axes, metres.
+    pub cg: Option<Vec3>,
+    /// Inertia about the centre of mass, kg m².
+    pub inertia: Option<Inertia>,
+}
+
+/// An elastic mode of unit generalised mass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElasticMode {
+    /// `elastic:1` and so on, in order of frequency.
+    pub name: String,
+    /// Number in the file.
+    pub index: u32,
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Circular frequency, rad/s; its square is the generalised stiffness.
+    pub omega: f64,
+    /// Generalised mass in the file, before normalisation, kg.
+    pub generalised_mass: f64,
+    /// Displacement a node, m per √kg m.
+    pub shape: Vec<Vec3>,
+    /// Largest participation of a rigid translation, relative to √mass; zero
+    /// for a mode orthogonal to rigid motion. `None` where the file is silent.
+    pub participation: Option<f64>,
+}
+
+/// A structure ready for transfer and for the eigenproblem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StructuralModel {
+    /// Mass properties used: given values, the rest from the file. `None`
+    /// where neither has any.
+    pub rigid_body: Option<RigidBody>,
+    /// Mass properties recovered from the file's own six rigid modes.
+    pub rigid_body_from_file: Option<RecoveredBody>,
+    /// Elastic modes, by ascending frequency.
+    pub elastic: Vec<ElasticMode>,
+    /// The result in SI units and mesh axes.
+    pub result: ModalResult,
+    /// Which of its modes are rigid.
+    pub survey: RigidSurvey,
+    /// What was repaired, ignored, assumed or looks odd.
+    pub notes: Vec<String>,
+}
+
+/// A structure that cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StructureError {
+    /// The files.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The mass properties.
+    #[error(transparent)]
+    RigidBody(#[from] RigidBodyError),
+    /// A choice of modes the file does not hold.
+    #[error(
+        "structure.modes = [{first}, {last}] where the file holds the elastic modes 1 to {count}"
+    )]
+    ModeRange {
+        /// First mode asked for.
+        first: usize,
+        /// Last mode asked for.
+        last: usize,
+        /// Elastic modes in the file.
+        count: usize,
+    },
+}
+
+/// Reads a structure and brings it into SI units, mesh axes and unit
+/// generalised masses; the file's rigid modes are recognised and removed.
+///
+/// # Errors
+/// [`StructureError`] for unreadable files, impossible mass properties and
+/// modes that are not there.
+pub fn load(settings: &StructureSettings) -> Result<StructuralModel, StructureError> {
+    let read = read_structure(
+        &settings.file,
+        settings.geometry.as_deref(),
+        settings.format,
+    )?;
+    let read = if settings.half { read.doubled() } else { read };
+    let result = read.to_si_mesh_axes(settings.units, &settings.axes, &settings.origin);
+    let survey = survey(&result);
+    let mut notes = result.notes.clone();
+    notes.extend(survey.notes.iter().cloned());
+    let rigid_body = rigid_body(&settings.rigid_body, &result, &survey, &mut notes)?;
+    let elastic = elastic_modes(&result, &survey, rigid_body.as_ref(), &mut notes);
+    let elastic = subset(elastic, settings.modes)?;
+    let rigid_body_from_file = survey.recovered;
+    Ok(StructuralModel {
+        rigid_body,
+        rigid_body_from_file,
+        elastic,
+        result,
+        survey,
+        notes,
+    })
+}
+
+fn rigid_body(
+    given: &RigidBodySettings,
+    result: &ModalResult,
+    survey: &RigidSurvey,
+    notes: &mut Vec<String>,
+) -> Result<Option<RigidBody>, RigidBodyError> {
+    let recovered = survey.recovered.map(|recovered| recovered.body);
+    if let (Some(_), Some(_)) = (result.stated_mass, recovered) {
+        notes.push(
+            "the file states mass properties: they are used, not those of its rigid modes"
+                .to_owned(),
+        );
+    }
+    let from_file = result.stated_mass.or(recovered);
+    let nothing_given = given.mass.is_none() && given.cg.is_none() && given.inertia.is_none();
+    if nothing_given && from_file.is_none() {
+        return Ok(None);
+    }
+    let missing = |name| RigidBodyError::Missing {
+        name,
+        rigid: survey.rigid_count(),
+    };
+    let body = RigidBody {
+        mass: given
+            .mass
+            .or(from_file.map(|b| b.mass))
+            .ok_or_else(|| missing("mass"))?,
+        cg: given
+            .cg
+            .or(from_file.map(|b| b.cg))
+            .ok_or_else(|| missing("cg"))?,
+        inertia: given
+            .inertia
+            .or(from_file.map(|b| b.inertia))
+            .ok_or_else(|| missing("inertia"))?,
+    };
+    body.check()?;
+    Ok(Some(body))
+}
+
+fn elastic_modes(
+    result: &ModalResult,
+    survey: &RigidSurvey,
+    body: Option<&RigidBody>,
+    notes: &mut Vec<String>,
+) -> Vec<ElasticMode> {
+    let mut modes: Vec<&Mode> = result
+        .modes
+        .iter()
+        .zip(&survey.fits)
+        .filter(|(_, fit)| !fit.rigid)
+        .map(|(mode, _)| mode)
+        .collect();
+    modes.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+    let elastic: Vec<ElasticMode> = modes
+        .iter()
+        .enumerate()
+        .map(|(k, mode)| normalised(mode, k + 1, body.map(|body| body.mass)))
+        .collect();
+    notes.extend(elastic.iter().filter_map(oddity));
+    elastic
+}
+
+fn normalised(mode: &Mode, number: usize, mass: Option<f64>) -> ElasticMode {
+    let scale = 1.0 / mode.generalised_mass.sqrt();
+    let participation = mode.participation.zip(mass);
+    ElasticMode {
+        name: format!("elastic:{number}"),
+        index: mode.index,
+        frequency_hz: mode.frequency_hz,
+        omega: TAU * mode.frequency_hz,
+        generalised_mass: mode.generalised_mass,
+        shape: mode.displacement.iter().map(|u| u * scale).collect(),
+        participation: participation
+            .map(|(factors, mass)| factors.amax() * scale / mass.sqrt()),
+    }
+}
+
+fn oddity(mode: &ElasticMode) -> Option<String> {
+    let ElasticMode { name, index, .. } = mode;
+    if mode.frequency_hz == 0.0 {
+        return Some(format!(
+            "{name} (mode {index}) has no stiffness and is no rigid motion: a mechanism"
+        ));
+    }
+    let participation = mode
+        .participation
+        .filter(|value| *value > PARTICIPATION_LIMIT)?;
+    Some(format!(
+        "{name} (mode {index}) is not orthogonal to rigid motion: participation {participation:.1e} \
+         of √mass (limit {PARTICIPATION_LIMIT:e})"
+    ))
+}
+
+fn subset(
+    elastic: Vec<ElasticMode>,
+    modes: Option<[usize; 2]>,
+) -> Result<Vec<ElasticMode>, StructureError> {
+    let Some([first, last]) = modes else {
+        return Ok(elastic);
+    };
+    let count = elastic.len();
+    if first == 0 || last < first || last > count {
+        return Err(StructureError::ModeRange { first, last, count });
+    }
+    Ok(elastic
+        .into_iter()
+        .skip(first - 1)
+        .take(last + 1 - first)
+        .collect())
+}
