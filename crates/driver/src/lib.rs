@@ -1,1 +1,6 @@
-//! Placeholder.
+//! The program `fladder`: case files, the store of aerodynamic results,
+//! progress, reports, and the command line.
+
+pub mod atmosphere;
+pub mod case;
+pub mod failure;
