@@ -1,1 +1,47 @@
-//! Placeholder.
+//! Generalised aerodynamic forces in the Laplace plane, incompressible flow.
+//!
+//! $$ Q_{ij}(p) = -\oint_S c_{p,j}(p)\,\mathbf n\cdot\boldsymbol\varphi_i\,\mathrm dS,
+//!    \qquad p = g + \mathrm ik = s b/U $$
+//!
+//! Forces act on the structure; n points into the fluid; b is the reference semichord
+//! (Eller, IFASD-2009-119, eq. (2)). A boundary-element method with a continuous, linear
+//! potential on flat triangles, tested by Galerkin rows, with a wake that is found by
+//! itself; linearised about the steady flow at incidence with unknowns carried by the
+//! surface. One real factorisation gives a [`TransferModel`] that evaluates Q at any p.
+//!
+//! | module | idea |
+//! |---|---|
+//! | `panels` | influence of flat triangles |
+//! | `adjacency`, `body_path`, `cut` | surface cut open along trailing edges and body lines |
+//! | `stations`, `wake` | the sheet and what jump it carries |
+//! | `contour`, `far_wake` | its semi-infinite part on a path in the complex plane |
+//! | `galerkin`, `dense` | the equations and their factorisation |
+//! | `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
+//! | `wake_influence`, `transfer`, `solve` | the reduced model |
+//!
+//! Nothing here knows about files, clocks or terminals.
+
+mod adjacency;
+mod body_path;
+mod boundary;
+mod contour;
+mod cut;
+mod dense;
+mod error;
+mod far_wake;
+mod galerkin;
+pub mod panels;
+mod pressure;
+mod progress;
+mod solve;
+mod stations;
+mod steady;
+mod transfer;
+mod wake;
+mod wake_influence;
+
+pub use error::{BemError, LaplaceError};
+pub use progress::{Progress, Silent};
+pub use solve::{Flow, Plan, Problem, Sizes, Solution, WakeDirection, plan, solve};
+pub use steady::{Loads, SpanwiseJump, SteadyState};
+pub use transfer::TransferModel;

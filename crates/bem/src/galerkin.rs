@@ -1,0 +1,225 @@
+//! Galerkin rows of the boundary integral equation.
+//!
+//! On the surface, with n out of the body and σ = ∂φ/∂n,
+//! $$ c\,\varphi - D[\varphi] - W[\kappa] = -S[\sigma], \qquad c = 1 + D[1]. $$
+//! The free term c follows from the row sum of D over the closed surface, at vertices,
+//! sharp edges and inside triangles alike. The equation is taken at three interior
+//! points q of each triangle, (2/3, 1/6, 1/6) and its turns, and tested with the hat
+//! functions: Σ_t A_t/3 Σ_q Nᵢ(q) {…}, divided by the test function's weight.
+//! One point a triangle has a null space on right-angled meshes; collocation at the
+//! vertices loses lift on thin wings.
+
+use crate::cut::CutSurface;
+use crate::error::BemError;
+use crate::panels::PanelSet;
+use crate::progress::Progress;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
+use fladder_mesh::Vec3;
+use rayon::prelude::*;
+
+/// Barycentric coordinates of the three test points.
+pub(crate) const POINTS: [[f64; 3]; 3] = [
+    [2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0],
+    [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
+    [1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0],
+];
+
+/// Triangles whose test points one task evaluates; fixed, so that the order of sums does
+/// not depend on the number of threads.
+pub(crate) const TASK_TRIANGLES: usize = 16;
+
+/// Tasks held in memory at once.
+const TASKS_AT_ONCE: usize = 32;
+
+/// Normals, areas, gradients and test points of a cut surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Galerkin {
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) n_vertices: usize,
+    pub(crate) normals: Vec<Vec3>,
+    pub(crate) areas: Vec<f64>,
+    /// ∇Nᵢ of each triangle.
+    pub(crate) gradients: Vec<[Vec3; 3]>,
+    /// Weight of each test function: a third of the areas round its vertex.
+    pub(crate) weights: Vec<f64>,
+    points: Vec<[Vec3; 3]>,
+    panels: PanelSet,
+}
+
+/// The assembled equations.
+#[derive(Debug)]
+pub(crate) struct Assembly {
+    /// Matrix of c φ − D φ by rows.
+    pub(crate) rows: Vec<f64>,
+    /// −S σ for every source column.
+    pub(crate) right_hand_sides: Mat<f64>,
+    /// Free term c at every test point.
+    pub(crate) free_terms: Vec<f64>,
+}
+
+struct TaskRows {
+    doublets: Vec<f64>,
+    sources: Mat<f64>,
+    free_terms: Vec<f64>,
+}
+
+impl Galerkin {
+    pub(crate) fn new(surface: &CutSurface) -> Self {
+        let n_vertices = surface.vertices.len();
+        let mut weights = vec![0.0; n_vertices];
+        let mut normals = Vec::new();
+        let mut areas = Vec::new();
+        let mut gradients = Vec::new();
+        let mut points = Vec::new();
+        for corners in &surface.triangles {
+            let p = corners.map(|v| surface.vertices[v as usize]);
+            let vector = (p[1] - p[0]).cross(&(p[2] - p[0]));
+            let twice_area = vector.norm();
+            let normal = vector / twice_area;
+            normals.push(normal);
+            areas.push(0.5 * twice_area);
+            gradients.push(std::array::from_fn(|i| {
+                normal.cross(&(p[(i + 2) % 3] - p[(i + 1) % 3])) / twice_area
+            }));
+            points.push(POINTS.map(|b| b[0] * p[0] + b[1] * p[1] + b[2] * p[2]));
+            for &v in corners {
+                weights[v as usize] += twice_area / 6.0;
+            }
+        }
+        Self {
+            triangles: surface.triangles.clone(),
+            n_vertices,
+            normals,
+            areas,
+            gradients,
+            weights,
+            points,
+            panels: PanelSet::new(&surface.vertices, &surface.triangles),
+        }
+    }
+
+    pub(crate) fn n_triangles(&self) -> usize {
+        self.triangles.len()
+    }
+
+    pub(crate) fn point(&self, triangle: usize, q: usize) -> Vec3 {
+        self.points[triangle][q]
+    }
+
+    /// Weight of test function `corner` of a triangle at test point `q`.
+    pub(crate) fn test_weight(&self, triangle: usize, q: usize, corner: usize) -> f64 {
+        let vertex = self.triangles[triangle][corner] as usize;
+        self.areas[triangle] / 3.0 * POINTS[q][corner] / self.weights[vertex]
+    }
+
+    /// Assembles the matrix and −S σ; `sources` holds σ at triangle corners, row
+    /// 3 t + corner, one column a source.
+    pub(crate) fn assemble(
+        &self,
+        sources: MatRef<'_, f64>,
+        progress: &dyn Progress,
+    ) -> Result<Assembly, BemError> {
+        let n = self.n_vertices;
+        let columns = sources.ncols();
+        let mut rows = vec![0.0; n * n];
+        let mut right_hand_sides = Mat::zeros(n, columns);
+        let mut free_terms = vec![0.0; 3 * self.n_triangles()];
+        progress.stage("assembling body influences", self.n_triangles() as u64);
+        let tasks: Vec<usize> = (0..self.n_triangles()).step_by(TASK_TRIANGLES).collect();
+        for batch in tasks.chunks(TASKS_AT_ONCE) {
+            if progress.cancelled() {
+                return Err(BemError::Interrupted { stage: "assembling body influences" });
+            }
+            let evaluated: Vec<TaskRows> = batch
+                .par_iter()
+                .map(|&first| {
+                    let result = self.evaluate(first, sources);
+                    progress.advance(self.task_triangles(first).len() as u64);
+                    result
+                })
+                .collect();
+            self.accumulate(batch, &evaluated, &mut rows, &mut right_hand_sides);
+            for (&first, task) in batch.iter().zip(&evaluated) {
+                free_terms[3 * first..3 * first + task.free_terms.len()]
+                    .copy_from_slice(&task.free_terms);
+            }
+        }
+        Ok(Assembly { rows, right_hand_sides, free_terms })
+    }
+
+    pub(crate) fn task_triangles(&self, first: usize) -> std::ops::Range<usize> {
+        first..(first + TASK_TRIANGLES).min(self.n_triangles())
+    }
+
+    /// c N − D and −S σ at the test points of one task.
+    fn evaluate(&self, first: usize, sources: MatRef<'_, f64>) -> TaskRows {
+        let range = self.task_triangles(first);
+        let n_points = 3 * range.len();
+        let mut scratch = self.panels.scratch();
+        let mut d = vec![[0.0; 3]; self.n_triangles()];
+        let mut doublets = vec![0.0; n_points * self.n_vertices];
+        let mut influences = vec![[0.0; 3]; n_points * self.n_triangles()];
+        let mut free_terms = Vec::with_capacity(n_points);
+        let points = range.flat_map(|t| (0..3).map(move |q| (t, q)));
+        for (((t, q), row), s) in points
+            .zip(doublets.chunks_exact_mut(self.n_vertices))
+            .zip(influences.chunks_exact_mut(self.n_triangles()))
+        {
+            self.panels.doublets_and_sources(self.point(t, q), &mut scratch, &mut d, s);
+            for (corners, values) in self.triangles.iter().zip(&d) {
+                for (&v, value) in corners.iter().zip(values) {
+                    row[v as usize] -= value;
+                }
+            }
+            let free = 1.0 - row.iter().sum::<f64>();
+            for (&v, shape) in self.triangles[t].iter().zip(&POINTS[q]) {
+                row[v as usize] += free * shape;
+            }
+            free_terms.push(free);
+        }
+        let influences = influences.as_flattened();
+        let transposed =
+            MatRef::from_column_major_slice(influences, 3 * self.n_triangles(), n_points);
+        let mut product = Mat::zeros(n_points, sources.ncols());
+        matmul(&mut product, Accum::Replace, transposed.transpose(), sources, -1.0, Par::Seq);
+        TaskRows { doublets, sources: product, free_terms }
+    }
+
+    /// Adds the tested rows; one thread a matrix row, tasks in their order.
+    fn accumulate(
+        &self,
+        batch: &[usize],
+        evaluated: &[TaskRows],
+        rows: &mut [f64],
+        right_hand_sides: &mut Mat<f64>,
+    ) {
+        let mut touching: Vec<Vec<(usize, usize, f64)>> = vec![Vec::new(); self.n_vertices];
+        for (task, &first) in batch.iter().enumerate() {
+            for (local, t) in self.task_triangles(first).enumerate() {
+                for q in 0..3 {
+                    for (corner, &v) in self.triangles[t].iter().enumerate() {
+                        let weight = self.test_weight(t, q, corner);
+                        touching[v as usize].push((task, 3 * local + q, weight));
+                    }
+                }
+            }
+        }
+        rows.par_chunks_exact_mut(self.n_vertices).zip(&touching).for_each(|(row, list)| {
+            for &(task, point, weight) in list {
+                let from = point * self.n_vertices;
+                let values = &evaluated[task].doublets[from..from + self.n_vertices];
+                for (a, d) in row.iter_mut().zip(values) {
+                    *a += weight * d;
+                }
+            }
+        });
+        for (v, list) in touching.iter().enumerate() {
+            for &(task, point, weight) in list {
+                for c in 0..right_hand_sides.ncols() {
+                    right_hand_sides[(v, c)] += weight * evaluated[task].sources[(point, c)];
+                }
+            }
+        }
+    }
+}

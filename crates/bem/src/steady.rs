@@ -1,0 +1,236 @@
+//! Steady flow about the loaded surface.
+//!
+//! φ₀ = A₀⁻¹(−S[−n·U] + T W(0) κ₀) for a unit onset along each axis; the steady velocity
+//! on a triangle is V₀ = U − n (n·U) + ∇_s φ₀ and c_p0 = 1 − |V₀|². Loads are quadratic in
+//! the onset, so that any incidence follows from the three unit solutions.
+
+use crate::cut::CutSurface;
+use crate::galerkin::Galerkin;
+use crate::wake::Wake;
+use faer::Mat;
+use fladder_mesh::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Velocity on every triangle for onsets along x, y and z, and the wake jumps.
+#[derive(Clone, Debug)]
+pub(crate) struct UnitOnsets {
+    /// Three a triangle.
+    pub(crate) velocities: Vec<[Vec3; 3]>,
+    /// κ₀: columns × 3.
+    pub(crate) jumps: Mat<f64>,
+}
+
+impl UnitOnsets {
+    /// From the potentials (vertices × 3) and jumps (columns × 3).
+    pub(crate) fn new(galerkin: &Galerkin, wake: &Wake, potentials: &Mat<f64>, jumps: Mat<f64>) -> Self {
+        let carried = carried_jumps(galerkin, wake, &jumps);
+        let velocities = (0..galerkin.n_triangles())
+            .map(|t| {
+                let normal = galerkin.normals[t];
+                std::array::from_fn(|axis| {
+                    let mut onset = Vec3::zeros();
+                    onset[axis] = 1.0;
+                    let mut velocity = onset - normal * normal[axis];
+                    for (corner, &v) in galerkin.triangles[t].iter().enumerate() {
+                        let phi = potentials[(v as usize, axis)]
+                            + carried.get(&(t as u32, corner)).map_or(0.0, |k| k[axis]);
+                        velocity += galerkin.gradients[t][corner] * phi;
+                    }
+                    velocity
+                })
+            })
+            .collect();
+        Self { velocities, jumps }
+    }
+
+    /// V₀ on a triangle for the onset `stream`.
+    pub(crate) fn velocity(&self, triangle: usize, stream: Vec3) -> Vec3 {
+        let [x, y, z] = &self.velocities[triangle];
+        x * stream.x + y * stream.y + z * stream.z
+    }
+}
+
+/// Steady jumps on the corners of triangles along body lines.
+fn carried_jumps(
+    galerkin: &Galerkin,
+    wake: &Wake,
+    jumps: &Mat<f64>,
+) -> std::collections::HashMap<(u32, usize), [f64; 3]> {
+    let mut carried = std::collections::HashMap::new();
+    for (triangle, corner, slot) in wake.body_corners() {
+        let mut value = [0.0; 3];
+        for &(column, weight) in &wake.threads[wake.slots[slot].thread] {
+            for (axis, v) in value.iter_mut().enumerate() {
+                *v += weight * jumps[(column, axis)];
+            }
+        }
+        carried.insert((triangle, corner), value);
+    }
+    debug_assert!(carried.keys().all(|(t, _)| (*t as usize) < galerkin.n_triangles()));
+    carried
+}
+
+/// The wake jump along one trailing edge.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SpanwiseJump {
+    /// Positions of the trailing-edge vertices, m.
+    pub positions: Vec<[f64; 3]>,
+    /// φ_upper − φ_lower at unit speed, m; zero at free tips.
+    pub jumps: Vec<f64>,
+    /// Whether the first and the last vertex lie on a body.
+    pub on_body: [bool; 2],
+}
+
+/// Steady loads, per q∞: forces in m², moments in m³ about the reference point.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Loads {
+    /// −∮ c_p n dS, mesh axes.
+    pub force: [f64; 3],
+    /// −∮ c_p (x − x₀) × n dS.
+    pub moment: [f64; 3],
+}
+
+/// The steady flow at the given incidence.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SteadyState {
+    /// Unit vector of the stream.
+    pub stream: [f64; 3],
+    /// Wake jump along every trailing edge.
+    pub wake_jumps: Vec<SpanwiseJump>,
+    /// Forces and moments.
+    pub loads: Loads,
+    /// −∮ c_p0 n·φ_i dS of every mode, m² for unit-metre modes.
+    pub generalised_forces: Vec<f64>,
+    /// Lift per q∞ from the wake jump, 2 ∫ κ₀ dy, m²: beside the pressure's it shows
+    /// how well the mesh resolves the flow.
+    pub lift_by_wake_jump: f64,
+    /// Lift per q∞ from the pressure, perpendicular to the stream, m².
+    pub lift_by_pressure: f64,
+    /// Lowest pressure coefficient and the triangle it is on.
+    pub lowest_pressure: (f64, usize),
+    /// Force (m²) and moment (m³) as quadratic forms of the onset's components:
+    /// entry [axis][a][b].
+    pub force_form: [[[f64; 3]; 3]; 3],
+    /// As `force_form`.
+    pub moment_form: [[[f64; 3]; 3]; 3],
+}
+
+impl SteadyState {
+    /// Loads for another onset (unit vector), with the wake left where it is.
+    pub fn loads_at(&self, stream: [f64; 3]) -> Loads {
+        let evaluate = |form: &[[[f64; 3]; 3]; 3]| {
+            std::array::from_fn(|axis| {
+                let mut sum = 0.0;
+                for (a, row) in form[axis].iter().enumerate() {
+                    for (b, value) in row.iter().enumerate() {
+                        sum += value * stream[a] * stream[b];
+                    }
+                }
+                sum
+            })
+        };
+        Loads { force: evaluate(&self.force_form), moment: evaluate(&self.moment_form) }
+    }
+}
+
+/// Gathers everything the user may want to know of the steady flow.
+pub(crate) struct SteadyReport<'a> {
+    pub(crate) galerkin: &'a Galerkin,
+    pub(crate) surface: &'a CutSurface,
+    pub(crate) onsets: &'a UnitOnsets,
+    pub(crate) stream: Vec3,
+    pub(crate) moment_point: Vec3,
+}
+
+impl SteadyReport<'_> {
+    pub(crate) fn build(
+        &self,
+        chains: &[fladder_mesh::TrailingEdge],
+        generalised_forces: Vec<f64>,
+    ) -> SteadyState {
+        let (force_form, moment_form) = self.forms();
+        let wake_jumps: Vec<SpanwiseJump> =
+            (0..chains.len()).map(|c| self.spanwise(c, &chains[c])).collect();
+        let lift_direction = self.lift_direction();
+        let mut state = SteadyState {
+            stream: self.stream.into(),
+            lift_by_wake_jump: wake_jumps.iter().map(|j| self.wake_lift(j)).sum(),
+            wake_jumps,
+            loads: Loads { force: [0.0; 3], moment: [0.0; 3] },
+            generalised_forces,
+            lift_by_pressure: 0.0,
+            lowest_pressure: self.lowest_pressure(),
+            force_form,
+            moment_form,
+        };
+        state.loads = state.loads_at(self.stream.into());
+        state.lift_by_pressure = Vec3::from(state.loads.force).dot(&lift_direction);
+        state
+    }
+
+    fn lift_direction(&self) -> Vec3 {
+        let up = Vec3::z() - self.stream * self.stream.z;
+        up.normalize()
+    }
+
+    /// −∮ c_p n dS with c_p = |U|² − |V|², as forms of U.
+    fn forms(&self) -> ([[[f64; 3]; 3]; 3], [[[f64; 3]; 3]; 3]) {
+        let mut force = [[[0.0; 3]; 3]; 3];
+        let mut moment = [[[0.0; 3]; 3]; 3];
+        for t in 0..self.galerkin.n_triangles() {
+            let area_vector = self.galerkin.normals[t] * self.galerkin.areas[t];
+            let centroid = self.galerkin.triangles[t]
+                .iter()
+                .map(|&v| self.surface.vertices[v as usize])
+                .sum::<Vec3>()
+                / 3.0;
+            let arm = (centroid - self.moment_point).cross(&area_vector);
+            let v = &self.onsets.velocities[t];
+            for a in 0..3 {
+                for b in 0..3 {
+                    let pressure = if a == b { 1.0 } else { 0.0 } - v[a].dot(&v[b]);
+                    for axis in 0..3 {
+                        force[axis][a][b] -= pressure * area_vector[axis];
+                        moment[axis][a][b] -= pressure * arm[axis];
+                    }
+                }
+            }
+        }
+        (force, moment)
+    }
+
+    fn spanwise(&self, c: usize, chain: &fladder_mesh::TrailingEdge) -> SpanwiseJump {
+        let columns = &self.surface.chain_columns[c];
+        let jumps = columns
+            .iter()
+            .map(|column| {
+                column.map_or(0.0, |j| {
+                    (0..3).map(|a| self.onsets.jumps[(j, a)] * self.stream[a]).sum()
+                })
+            })
+            .collect();
+        let positions =
+            chain.vertices.iter().map(|&v| self.surface.vertices[v as usize].into()).collect();
+        let on_body = [columns.first(), columns.last()]
+            .map(|end| !chain.closed && end.is_some_and(Option::is_some));
+        SpanwiseJump { positions, jumps, on_body }
+    }
+
+    /// Kutta–Joukowski: force per q∞ = 2 ∫ κ U × dl, its component along lift.
+    fn wake_lift(&self, jump: &SpanwiseJump) -> f64 {
+        let lift = self.lift_direction();
+        let mut sum = 0.0;
+        for (p, k) in jump.positions.windows(2).zip(jump.jumps.windows(2)) {
+            let step = Vec3::from(p[1]) - Vec3::from(p[0]);
+            let mean = 0.5 * (k[0] + k[1]);
+            sum += 2.0 * mean * self.stream.cross(&step).dot(&lift);
+        }
+        sum
+    }
+
+    fn lowest_pressure(&self) -> (f64, usize) {
+        (0..self.galerkin.n_triangles())
+            .map(|t| (1.0 - self.onsets.velocity(t, self.stream).norm_squared(), t))
+            .fold((f64::INFINITY, 0), |low, here| if here.0 < low.0 { here } else { low })
+    }
+}

@@ -1,0 +1,264 @@
+//! The wake's influence at the test points, tested and contracted on the fly.
+//!
+//! Nothing of size points × wake is kept: a task evaluates its test points and leaves
+//! either rows summed over the wake (steady) or small blocks Lᵀ T W (reduced model).
+
+use crate::contour::Path;
+use crate::error::BemError;
+use crate::galerkin::{Galerkin, POINTS};
+use crate::progress::Progress;
+use crate::wake::Wake;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par, c64};
+use rayon::prelude::*;
+
+/// Parts into which the test points are divided; each sums by itself and the parts are
+/// added in order, so that the number of threads does not change a bit.
+const PARTS: usize = 16;
+
+/// Influence of every slot, and of every far streamline at every node.
+pub(crate) struct WakeBlocks {
+    /// Lᵀ T W of each slot: functionals × slots.
+    pub(crate) near: Mat<f64>,
+    /// One a path: functionals × (streamlines × nodes), weights of the path included.
+    pub(crate) far: Vec<Mat<c64>>,
+}
+
+/// Evaluates a wake over a surface.
+pub(crate) struct WakeInfluence<'a> {
+    pub(crate) galerkin: &'a Galerkin,
+    pub(crate) wake: &'a Wake,
+    pub(crate) free_terms: &'a [f64],
+}
+
+impl WakeInfluence<'_> {
+    /// T W(0): test functions × columns, the steady wake.
+    pub(crate) fn steady(
+        &self,
+        columns: usize,
+        progress: &dyn Progress,
+    ) -> Result<Mat<f64>, BemError> {
+        let stage = "evaluating the steady wake";
+        let n_triangles = self.galerkin.n_triangles();
+        progress.stage(stage, n_triangles as u64);
+        let path = &self.wake.paths.oscillating;
+        let rows: Vec<Vec<f64>> = (0..n_triangles)
+            .into_par_iter()
+            .map_init(
+                || Evaluator::new(self),
+                |evaluator, t| {
+                    if progress.cancelled() {
+                        return Vec::new();
+                    }
+                    let mut out = vec![0.0; 3 * columns];
+                    for q in 0..3 {
+                        let part = &mut out[q * columns..(q + 1) * columns];
+                        evaluator.steady_row(t, q, path, part);
+                    }
+                    progress.advance(1);
+                    out
+                },
+            )
+            .collect();
+        if progress.cancelled() {
+            return Err(BemError::Interrupted { stage });
+        }
+        let mut tested = Mat::zeros(self.galerkin.n_vertices, columns);
+        for (t, row) in rows.iter().enumerate() {
+            for q in 0..3 {
+                for (corner, &v) in self.galerkin.triangles[t].iter().enumerate() {
+                    let weight = self.galerkin.test_weight(t, q, corner);
+                    for c in 0..columns {
+                        tested[(v as usize, c)] += weight * row[q * columns + c];
+                    }
+                }
+            }
+        }
+        Ok(tested)
+    }
+
+    /// Contracts the wake with functionals given on the vertices: `left` has one
+    /// column a functional.
+    pub(crate) fn blocks(
+        &self,
+        left: MatRef<'_, f64>,
+        progress: &dyn Progress,
+    ) -> Result<WakeBlocks, BemError> {
+        let stage = "contracting the wake";
+        let n_triangles = self.galerkin.n_triangles();
+        progress.stage(stage, n_triangles as u64);
+        let size = n_triangles.div_ceil(PARTS);
+        let parts: Vec<WakeBlocks> = (0..PARTS)
+            .into_par_iter()
+            .map(|part| {
+                let range = (part * size).min(n_triangles)..((part + 1) * size).min(n_triangles);
+                self.part(range, left, progress)
+            })
+            .collect();
+        if progress.cancelled() {
+            return Err(BemError::Interrupted { stage });
+        }
+        let mut parts = parts.into_iter();
+        let mut total = parts.next().expect("there is at least one part");
+        for part in parts {
+            total.near += part.near;
+            for (sum, far) in total.far.iter_mut().zip(part.far) {
+                *sum += far;
+            }
+        }
+        Ok(total)
+    }
+
+    fn part(
+        &self,
+        range: std::ops::Range<usize>,
+        left: MatRef<'_, f64>,
+        progress: &dyn Progress,
+    ) -> WakeBlocks {
+        let functionals = left.ncols();
+        let paths = [&self.wake.paths.oscillating, &self.wake.paths.decaying];
+        let lines = self.wake.far.anchors.len();
+        let mut blocks = WakeBlocks {
+            near: Mat::zeros(functionals, self.wake.slots.len()),
+            far: paths.map(|p| Mat::zeros(functionals, lines * p.nodes.len())).to_vec(),
+        };
+        let mut evaluator = Evaluator::new(self);
+        for first in range.clone().step_by(crate::galerkin::TASK_TRIANGLES) {
+            if progress.cancelled() {
+                return blocks;
+            }
+            let triangles = first..(first + crate::galerkin::TASK_TRIANGLES).min(range.end);
+            self.contract(triangles.clone(), left, &mut evaluator, &mut blocks);
+            progress.advance(triangles.len() as u64);
+        }
+        blocks
+    }
+
+    fn contract(
+        &self,
+        triangles: std::ops::Range<usize>,
+        left: MatRef<'_, f64>,
+        evaluator: &mut Evaluator<'_>,
+        blocks: &mut WakeBlocks,
+    ) {
+        let n_points = 3 * triangles.len();
+        let slots = self.wake.slots.len();
+        let paths = [&self.wake.paths.oscillating, &self.wake.paths.decaying];
+        let lines = self.wake.far.anchors.len();
+        let mut tested = Mat::zeros(left.ncols(), n_points);
+        let mut near = vec![0.0; n_points * slots];
+        let mut far = paths.map(|p| vec![c64::new(0.0, 0.0); n_points * lines * p.nodes.len()]);
+        for (i, t) in triangles.enumerate() {
+            for q in 0..3 {
+                let p = 3 * i + q;
+                for (corner, &v) in self.galerkin.triangles[t].iter().enumerate() {
+                    let weight = self.galerkin.test_weight(t, q, corner);
+                    for f in 0..left.ncols() {
+                        tested[(f, p)] += weight * left[(v as usize, f)];
+                    }
+                }
+                evaluator.near_row(t, q, &mut near[p * slots..(p + 1) * slots]);
+                for (path, out) in paths.iter().zip(&mut far) {
+                    let width = lines * path.nodes.len();
+                    evaluator.far_row(t, q, path, &mut out[p * width..(p + 1) * width]);
+                }
+            }
+        }
+        let near = MatRef::from_column_major_slice(&near, slots, n_points);
+        matmul(&mut blocks.near, Accum::Add, &tested, near.transpose(), 1.0, Par::Seq);
+        let tested = Mat::from_fn(tested.nrows(), tested.ncols(), |i, j| {
+            c64::new(tested[(i, j)], 0.0)
+        });
+        for ((block, values), path) in blocks.far.iter_mut().zip(&far).zip(paths) {
+            let width = lines * path.nodes.len();
+            let values = MatRef::from_column_major_slice(values, width, n_points);
+            let one = c64::new(1.0, 0.0);
+            matmul(block, Accum::Add, &tested, values.transpose(), one, Par::Seq);
+        }
+    }
+}
+
+/// Working space of one thread.
+struct Evaluator<'a> {
+    of: &'a WakeInfluence<'a>,
+    near_scratch: crate::panels::PanelScratch,
+    near_values: Vec<[f64; 3]>,
+    body_scratch: crate::panels::PanelScratch,
+    body_values: Vec<[f64; 3]>,
+    slots: Vec<f64>,
+    distances: Vec<c64>,
+    lines: Vec<c64>,
+}
+
+impl<'a> Evaluator<'a> {
+    fn new(of: &'a WakeInfluence<'a>) -> Self {
+        let wake = of.wake;
+        Self {
+            of,
+            near_scratch: wake.near.panels.scratch(),
+            near_values: vec![[0.0; 3]; wake.near.panels.len()],
+            body_scratch: wake.body.panels.scratch(),
+            body_values: vec![[0.0; 3]; wake.body.panels.len()],
+            slots: vec![0.0; wake.slots.len()],
+            distances: Vec::new(),
+            lines: Vec::new(),
+        }
+    }
+
+    /// Influence of every slot at one test point: free sheet, and on bodies
+    /// D^up − c N^up of the corners that carry a jump.
+    fn near_row(&mut self, triangle: usize, q: usize, out: &mut [f64]) {
+        let point = self.of.galerkin.point(triangle, q);
+        let wake = self.of.wake;
+        out.fill(0.0);
+        wake.near.panels.doublets(point, &mut self.near_scratch, &mut self.near_values);
+        wake.near.gather(&self.near_values, out);
+        if wake.body.panels.is_empty() {
+            return;
+        }
+        wake.body.panels.doublets(point, &mut self.body_scratch, &mut self.body_values);
+        if let Ok(own) = wake.body.body_triangles.binary_search(&(triangle as u32)) {
+            let free = self.of.free_terms[3 * triangle + q];
+            for (value, shape) in self.body_values[own].iter_mut().zip(&POINTS[q]) {
+                *value -= free * shape;
+            }
+        }
+        wake.body.gather(&self.body_values, out);
+    }
+
+    /// Influence of every streamline at every node of a path.
+    fn far_row(&mut self, triangle: usize, q: usize, path: &Path, out: &mut [c64]) {
+        let point = self.of.galerkin.point(triangle, q);
+        self.of.wake.far.influence(
+            point,
+            &path.nodes,
+            &path.weights,
+            &mut self.distances,
+            out,
+        );
+    }
+
+    /// Influence of every column at s = 0.
+    fn steady_row(&mut self, triangle: usize, q: usize, path: &Path, out: &mut [f64]) {
+        let wake = self.of.wake;
+        let mut slots = std::mem::take(&mut self.slots);
+        self.near_row(triangle, q, &mut slots);
+        for (slot, value) in wake.slots.iter().zip(&slots) {
+            for &(column, weight) in &wake.threads[slot.thread] {
+                out[column] += weight * value;
+            }
+        }
+        self.slots = slots;
+        let n = path.nodes.len();
+        let mut lines = std::mem::take(&mut self.lines);
+        lines.resize(wake.far.anchors.len() * n, c64::new(0.0, 0.0));
+        self.far_row(triangle, q, path, &mut lines);
+        for (values, &thread) in lines.chunks_exact(n).zip(&wake.far_threads) {
+            let sum: f64 = values.iter().map(|v| v.re).sum();
+            for &(column, weight) in &wake.threads[thread] {
+                out[column] += weight * sum;
+            }
+        }
+        self.lines = lines;
+    }
+}
