@@ -76,3 +76,77 @@ pub enum ReadError {
         message: String,
     },
 }
+
+/// A structure that cannot carry a surface.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TransferError {
+    /// A mesh without any triangle of finite area.
+    #[error("the mesh has no triangle of any area")]
+    NoSurface,
+    /// Nothing that has faces.
+    #[error(
+        "the structure has no shells and no solids among its {elements} elements: nothing there \
+         can carry a surface; name a geometry file if the result holds nodes alone"
+    )]
+    NoSkin {
+        /// Elements in the structure.
+        elements: usize,
+    },
+    /// No face of the structure lies on the wetted surface.
+    #[error("no face of the structure lies on the wetted surface")]
+    NotOnSurface,
+    /// Different units.
+    #[error(
+        "the mesh measures {mesh:.4e} m across and the structure {structure:.4e} m, a ratio of \
+         {ratio:.4e} outside 0.5 to 2; check mesh.scale and structure.units"
+    )]
+    Size {
+        /// Diagonal of the mesh's box, m.
+        mesh: f64,
+        /// Diagonal of the structure's box, m.
+        structure: f64,
+        /// Their ratio.
+        ratio: f64,
+    },
+    /// Different axes, places or aircraft.
+    #[error(
+        "{:.0} % of the wetted surface lie on the structure, and 30 % are needed; {hint}",
+        100.0 * overlap
+    )]
+    Apart {
+        /// Share of the wetted area near the structure.
+        overlap: f64,
+        /// What to try.
+        hint: String,
+    },
+    /// A group of `structure.components` that the mesh lacks.
+    #[error("structure.components names {name:?}, but the mesh has the groups {known:?}")]
+    NoGroup {
+        /// Name given.
+        name: String,
+        /// Groups of the mesh.
+        known: Vec<String>,
+    },
+    /// A set of `structure.components` that the structure lacks.
+    #[error(
+        "structure.components.{group} names {name:?}, but the structure has the element sets \
+         {known:?}"
+    )]
+    NoSet {
+        /// Name given.
+        name: String,
+        /// Group it is given for.
+        group: String,
+        /// Element sets of the structure.
+        known: Vec<String>,
+    },
+    /// Sets without shells or solids.
+    #[error("{group}: the sets {sets:?} hold no shell and no free face of a solid")]
+    NoFaces {
+        /// Group of the mesh.
+        group: String,
+        /// Sets given for it.
+        sets: Vec<String>,
+    },
+}

@@ -1,0 +1,345 @@
+//! Modes of the structure on the wetted surface.
+//!
+//! Every vertex is carried by the nearest face of its component and the rotation
+//! of that face ([`crate::offset`]); all of it is one sparse matrix, whose
+//! transpose carries forces back ([`BlockMatrix`]).
+
+use crate::axes_hint::better_axes;
+use crate::block_matrix::BlockMatrix;
+use crate::closest::FaceSearch;
+use crate::components::{Mapping, Plan, Planner, target_faces};
+use crate::error::TransferError;
+use crate::model::StructuralModel;
+use crate::offset;
+use crate::read::{diagonal, ranges};
+use crate::result::ModalResult;
+use crate::skin::{self, Skin, SurfaceSearch};
+use fladder_mesh::{Frame, SurfaceMode, TriMesh, Vec3};
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Mesh size over structure size, both box diagonals: outside, the two are in
+/// different units (the smallest common factor is 3.3, feet to metres) or one
+/// of them is not the aircraft.
+const SIZE_RATIO: [f64; 2] = [0.5, 2.0];
+
+/// Distance from the structure, relative to the mesh's diagonal, up to which a
+/// vertex counts as covered: open noses and hinge gaps stay below.
+const COVERED: f64 = 0.025;
+
+/// Share of the surface that must be covered: less, and the two are in different
+/// axes or belong to different aircraft.
+const LEAST_OVERLAP: f64 = 0.3;
+
+/// Share under which a note is made.
+const EXPECTED_OVERLAP: f64 = 0.95;
+
+/// The matrix and what is to be said about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Transfer {
+    /// Nodes of the structure to vertices of the mesh.
+    pub matrix: BlockMatrix,
+    /// How well the two fit.
+    pub report: TransferReport,
+}
+
+/// How structure and surface fit together.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TransferReport {
+    /// Diagonal of the mesh over that of the structure.
+    pub size_ratio: f64,
+    /// Largest distance of a vertex from the structure that carries it, m.
+    pub largest_distance: f64,
+    /// The vertex of that distance.
+    pub farthest_vertex: u32,
+    /// Share of the wetted area nearer to the structure than `covered_within`.
+    pub overlap: f64,
+    /// Distance up to which a vertex counts as covered, m.
+    pub covered_within: f64,
+    /// One entry a part of the mesh.
+    pub components: Vec<ComponentReport>,
+    /// Elements that carry no surface, by set.
+    pub left_out: Vec<String>,
+    /// What looks odd.
+    pub notes: Vec<String>,
+}
+
+/// How one part of the mesh is carried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ComponentReport {
+    /// Group of the mesh.
+    pub name: String,
+    /// Element sets of the structure that carry it.
+    pub sets: Vec<String>,
+    /// How they were found.
+    pub mapping: Mapping,
+    /// Faces that carry it.
+    pub faces: usize,
+    /// Vertices carried.
+    pub vertices: usize,
+    /// Largest distance of one of them from its face, m.
+    pub largest_distance: f64,
+    /// Vertices farther away than [`TransferReport::covered_within`].
+    pub uncovered: usize,
+}
+
+/// Carries the elastic modes of a structure to a mesh; frame
+/// [`Frame::Inertial`].
+///
+/// `components` names the element sets for groups of the mesh; groups it does
+/// not hold are matched by equal names, else by connectivity.
+///
+/// # Errors
+/// See [`build`].
+pub fn transfer(
+    model: &StructuralModel,
+    mesh: &TriMesh,
+    components: &BTreeMap<String, Vec<String>>,
+) -> Result<(Vec<SurfaceMode>, TransferReport), TransferError> {
+    let Transfer { matrix, report } = build(&model.result, mesh, components)?;
+    let modes = model
+        .elastic
+        .par_iter()
+        .map(|mode| SurfaceMode {
+            name: mode.name.clone(),
+            frame: Frame::Inertial,
+            displacement: matrix.displacement(&mode.shape),
+        })
+        .collect();
+    Ok((modes, report))
+}
+
+/// Builds the matrix that carries displacements from structure to mesh.
+///
+/// Cost: a nearest-face query a vertex, O(vertices · log faces).
+///
+/// # Errors
+/// [`TransferError`] for structures without shells or solids, unknown names,
+/// sizes that betray different units, and bodies that lie apart.
+pub fn build(
+    result: &ModalResult,
+    mesh: &TriMesh,
+    components: &BTreeMap<String, Vec<String>>,
+) -> Result<Transfer, TransferError> {
+    let positions = result.positions();
+    let surface = SurfaceSearch::new(mesh).ok_or(TransferError::NoSurface)?;
+    let skin = Skin::find(result, &positions, &surface);
+    if skin.faces.is_empty() {
+        return Err(TransferError::NoSkin {
+            elements: result.elements.len(),
+        });
+    }
+    let size_ratio = size_ratio(&skin, &positions, mesh)?;
+    let planner = Planner {
+        result,
+        positions: &positions,
+        mesh,
+        skin: &skin,
+        given: components,
+    };
+    let plan = match planner.plan() {
+        Err(TransferError::NotOnSurface) => {
+            return Err(TransferError::Apart {
+                overlap: 0.0,
+                hint: better_axes(&positions, &mesh.vertices),
+            });
+        }
+        other => other?,
+    };
+    let carried = carry(&plan, &skin, &positions, mesh);
+    let mut report = report(&plan, &skin, &carried, mesh);
+    report.size_ratio = size_ratio;
+    report.left_out = left_out(&plan, &skin, result);
+    if report.overlap < LEAST_OVERLAP {
+        let hint = better_axes(&positions, &mesh.vertices);
+        return Err(TransferError::Apart {
+            overlap: report.overlap,
+            hint,
+        });
+    }
+    let rows = carried.into_iter().map(|carried| carried.blocks).collect();
+    Ok(Transfer {
+        matrix: BlockMatrix::from_rows(positions.len(), rows),
+        report,
+    })
+}
+
+fn size_ratio(skin: &Skin, positions: &[Vec3], mesh: &TriMesh) -> Result<f64, TransferError> {
+    let used: BTreeSet<u32> = skin
+        .faces
+        .iter()
+        .flat_map(|f| f.nodes.iter().copied())
+        .collect();
+    let structure = diagonal(used.iter().map(|node| &positions[*node as usize]));
+    let mesh = diagonal(mesh.vertices.iter());
+    let ratio = mesh / structure;
+    if ratio >= SIZE_RATIO[0] && ratio <= SIZE_RATIO[1] {
+        return Ok(ratio);
+    }
+    Err(TransferError::Size {
+        mesh,
+        structure,
+        ratio,
+    })
+}
+
+/// One row of the matrix and its distance; no blocks for vertices of no
+/// triangle.
+struct Carried {
+    blocks: Vec<(u32, Matrix3<f64>)>,
+    distance: f64,
+}
+
+fn carry(plan: &Plan, skin: &Skin, positions: &[Vec3], mesh: &TriMesh) -> Vec<Carried> {
+    let searches: Vec<Option<FaceSearch>> = plan
+        .targets
+        .iter()
+        .map(|target| FaceSearch::new(target_faces(skin, target), positions))
+        .collect();
+    mesh.vertices
+        .par_iter()
+        .zip(&plan.of_vertex)
+        .map(|(vertex, component)| {
+            let target = component.map(|c| plan.components[c as usize].target);
+            let Some(search) = target.and_then(|target| searches[target].as_ref()) else {
+                return Carried {
+                    blocks: Vec::new(),
+                    distance: 0.0,
+                };
+            };
+            let hit = search.nearest(vertex, positions);
+            let face = &search.faces()[hit.face as usize];
+            let blocks = offset::blocks(face, hit.at, vertex, positions);
+            Carried {
+                blocks,
+                distance: hit.distance,
+            }
+        })
+        .collect()
+}
+
+fn report(plan: &Plan, skin: &Skin, carried: &[Carried], mesh: &TriMesh) -> TransferReport {
+    let covered_within = COVERED * diagonal(mesh.vertices.iter());
+    let mut components: Vec<ComponentReport> = plan
+        .components
+        .iter()
+        .map(|component| ComponentReport {
+            name: component.name.clone(),
+            sets: component.sets.clone(),
+            mapping: component.mapping,
+            faces: plan.targets[component.target].len(),
+            vertices: 0,
+            largest_distance: 0.0,
+            uncovered: 0,
+        })
+        .collect();
+    let mut report = TransferReport {
+        covered_within,
+        overlap: overlap(carried, mesh, covered_within),
+        notes: plan.notes.clone(),
+        ..TransferReport::default()
+    };
+    let mut unused = 0;
+    for (vertex, (component, row)) in plan.of_vertex.iter().zip(carried).enumerate() {
+        let Some(component) = component else {
+            unused += 1;
+            continue;
+        };
+        let component = &mut components[*component as usize];
+        component.vertices += 1;
+        component.largest_distance = component.largest_distance.max(row.distance);
+        component.uncovered += usize::from(row.distance > covered_within);
+        if row.distance > report.largest_distance {
+            report.largest_distance = row.distance;
+            report.farthest_vertex = vertex as u32;
+        }
+    }
+    if unused > 0 {
+        report
+            .notes
+            .push(format!("{unused} vertices of no triangle are not moved"));
+    }
+    if report.overlap < EXPECTED_OVERLAP {
+        report.notes.push(format!(
+            "{:.0} % of the surface lie more than {covered_within:.3} m from the structure and \
+             move as its nearest part continued rigidly",
+            100.0 * (1.0 - report.overlap)
+        ));
+    }
+    let inside = skin.is_skin.iter().filter(|is_skin| !**is_skin).count();
+    if inside == skin.faces.len() {
+        report
+            .notes
+            .push("no face of the structure lies on the surface".to_owned());
+    }
+    report.components = components;
+    report
+}
+
+/// Share of the wetted area whose corners are covered, a third each.
+fn overlap(carried: &[Carried], mesh: &TriMesh, within: f64) -> f64 {
+    let (mut covered, mut total) = (0.0, 0.0);
+    for (index, triangle) in mesh.triangles.iter().enumerate() {
+        let third = mesh.area_vector(index).norm() / 3.0;
+        for vertex in triangle {
+            total += third;
+            if carried[*vertex as usize].distance <= within {
+                covered += third;
+            }
+        }
+    }
+    if total > 0.0 { covered / total } else { 0.0 }
+}
+
+/// Elements that carry nothing, by reason and set.
+fn left_out(plan: &Plan, skin: &Skin, result: &ModalResult) -> Vec<String> {
+    let mut used = vec![false; result.elements.len()];
+    for face in plan.targets.iter().flatten() {
+        used[skin.faces[*face as usize].element as usize] = true;
+    }
+    let judged: BTreeSet<u32> = skin.faces.iter().map(|face| face.element).collect();
+    let mut by_reason: BTreeMap<&str, Vec<u32>> = BTreeMap::new();
+    for (index, element) in result.elements.iter().enumerate().filter(|e| !used[e.0]) {
+        let reason = skin::reason(element.kind, judged.contains(&(index as u32)));
+        by_reason.entry(reason).or_default().push(index as u32);
+    }
+    by_reason
+        .into_iter()
+        .map(|(reason, elements)| format!("{reason}: {}", by_set(&elements, result)))
+        .collect()
+}
+
+/// `WWEB (34), RIB (60), 3 elements of no set (17-19)`.
+fn by_set(elements: &[u32], result: &ModalResult) -> String {
+    let mut rest: BTreeSet<u32> = elements.iter().copied().collect();
+    let mut words = Vec::new();
+    for set in &result.element_sets {
+        let members: Vec<u32> = set
+            .members
+            .iter()
+            .filter(|member| rest.contains(member))
+            .copied()
+            .collect();
+        if members.is_empty() {
+            continue;
+        }
+        members.iter().for_each(|member| {
+            rest.remove(member);
+        });
+        let part = if members.len() == set.members.len() {
+            format!("{} ({})", set.name, members.len())
+        } else {
+            format!("{} ({} of {})", set.name, members.len(), set.members.len())
+        };
+        words.push(part);
+    }
+    if !rest.is_empty() {
+        let ids: Vec<u64> = rest
+            .iter()
+            .map(|e| result.elements[*e as usize].id)
+            .collect();
+        words.push(format!("{} of no set ({})", ids.len(), ranges(&ids)));
+    }
+    words.join(", ")
+}
