@@ -1,9 +1,12 @@
 //! Triangle meshes of wetted surfaces: read, judge, and find the edges a wake leaves from.
 
+pub mod read;
 pub mod shapes;
 mod surface;
 mod topology;
 pub mod trailing_edge;
+pub mod weld;
+pub mod write;
 
 pub use surface::{CurveGroup, Frame, SurfaceGroup, SurfaceMode, TriMesh, Vec3};
 pub use topology::Topology;

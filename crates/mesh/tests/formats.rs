@@ -1,0 +1,419 @@
+//! Every format that is read, from files of another program and from our own.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use fladder_mesh::read::{Format, Loaded, ReadError, load, parse};
+use fladder_mesh::shapes::{NacaWing, icosphere};
+use fladder_mesh::{Topology, TriMesh, write};
+
+fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data")
+        .join(name)
+}
+
+fn parse_bytes(bytes: &[u8]) -> Result<Loaded, ReadError> {
+    parse(bytes, Path::new("memory"), 1.0)
+}
+
+fn area_of(mesh: &TriMesh, group: &str) -> f64 {
+    let triangles = &mesh.surface(group).unwrap().triangles;
+    triangles
+        .iter()
+        .map(|&t| mesh.area_vector(t as usize).norm())
+        .sum()
+}
+
+fn sorted(mesh: &TriMesh, group: &str) -> Vec<[u32; 3]> {
+    let triangles = &mesh.surface(group).unwrap().triangles;
+    let mut triangles: Vec<[u32; 3]> = triangles
+        .iter()
+        .map(|&t| mesh.triangles[t as usize])
+        .collect();
+    triangles.sort_unstable();
+    triangles
+}
+
+/// Closed, of area 7 m² and volume 1 m³, as a box of 2 × 1 × 0.5 m is.
+fn assert_is_the_box(mesh: &TriMesh, tolerance: f64) {
+    let topology = Topology::new(mesh);
+    assert!((0..topology.edges.len()).all(|edge| topology.edge_triangles(edge).len() == 2));
+    assert_eq!(
+        mesh.vertices.len() + mesh.triangles.len() - topology.edges.len(),
+        2
+    );
+    assert!(
+        (mesh.area() - 7.0).abs() < tolerance,
+        "area {}",
+        mesh.area()
+    );
+    assert!(
+        (mesh.volume() - 1.0).abs() < tolerance,
+        "volume {}",
+        mesh.volume()
+    );
+}
+
+const MSH: [&str; 4] = [
+    "box_22_ascii.msh",
+    "box_22_binary.msh",
+    "box_41_ascii.msh",
+    "box_41_binary.msh",
+];
+
+#[test]
+fn the_four_flavours_of_gmsh_give_the_same_box_and_groups() {
+    let mut first: Option<TriMesh> = None;
+    for name in MSH {
+        let loaded = load(data(name), 1.0).unwrap();
+        assert_eq!(loaded.format, Format::Msh);
+        let mesh = loaded.mesh;
+        // Gmsh places edge points within 3e-12.
+        assert_is_the_box(&mesh, 1e-10);
+        let names: Vec<&str> = mesh
+            .surfaces
+            .iter()
+            .map(|group| group.name.as_str())
+            .collect();
+        assert_eq!(names, ["top", "rest of it", "9"], "{name}");
+        for (group, area) in [("top", 2.0), ("rest of it", 5.0), ("9", 2.5)] {
+            assert!(
+                (area_of(&mesh, group) - area).abs() < 1e-10,
+                "{group} of {name}"
+            );
+        }
+        let curve = mesh.curve("upper back edge").unwrap();
+        let at = |v: u32| mesh.vertices[v as usize];
+        let length: f64 = curve
+            .edges
+            .iter()
+            .map(|&[a, b]| (at(b) - at(a)).norm())
+            .sum();
+        assert!((length - 1.0).abs() < 1e-10);
+        assert!(
+            curve
+                .edges
+                .iter()
+                .flatten()
+                .all(|&v| at(v).x == 2.0 && at(v).z == 0.5)
+        );
+        // The versions order the faces differently, so sets are compared.
+        let first = first.get_or_insert_with(|| mesh.clone());
+        for group in ["top", "rest of it", "9"] {
+            assert_eq!(
+                sorted(&mesh, group),
+                sorted(first, group),
+                "{group} of {name}"
+            );
+        }
+        assert_eq!(mesh.curves, first.curves);
+    }
+}
+
+#[test]
+fn stl_is_welded_and_says_how_many_vertices_became_one() {
+    for (name, format) in [
+        ("box_ascii.stl", Format::StlAscii),
+        ("box_binary.stl", Format::StlBinary),
+    ] {
+        let loaded = load(data(name), 1.0).unwrap();
+        assert_eq!(loaded.format, format);
+        assert_is_the_box(&loaded.mesh, 1e-6);
+        let (n_triangles, n_vertices) =
+            (loaded.mesh.triangles.len(), loaded.mesh.vertices.len());
+        let said = format!(
+            "{} corners of {n_triangles} triangles welded to {n_vertices}",
+            3 * n_triangles
+        );
+        assert!(loaded.notes[0].starts_with(&said), "{:?}", loaded.notes);
+    }
+}
+
+#[test]
+fn a_binary_stl_whose_header_says_solid_is_read() {
+    let mut bytes = std::fs::read(data("box_binary.stl")).unwrap();
+    bytes[..20].copy_from_slice(b"solid facet by name ");
+    let loaded = parse_bytes(&bytes).unwrap();
+    assert_eq!(loaded.format, Format::StlBinary);
+    assert_is_the_box(&loaded.mesh, 1e-6);
+}
+
+#[test]
+fn several_solids_of_a_text_stl_become_groups() {
+    let facet = |z: f64| {
+        format!(
+            "facet normal 0 0 1\n outer loop\n vertex 0 0 {z}\n vertex 1 0 {z}\n vertex 0 1 {z}\n endloop\nendfacet\n"
+        )
+    };
+    let text = format!(
+        "solid left wing\n{}{}endsolid left wing\r\nsolid tail\n{}endsolid\n",
+        facet(0.0),
+        facet(1.0),
+        facet(2.0)
+    );
+    let mesh = parse_bytes(text.as_bytes()).unwrap().mesh;
+    assert_eq!(mesh.surface("left wing").unwrap().triangles, [0, 1]);
+    assert_eq!(mesh.surface("tail").unwrap().triangles, [2]);
+}
+
+#[test]
+fn an_stl_whose_count_is_too_small_is_refused_with_both_numbers() {
+    let mut bytes = std::fs::read(data("box_binary.stl")).unwrap();
+    bytes[80..84].copy_from_slice(&3_u32.to_le_bytes());
+    let message = parse_bytes(&bytes).unwrap_err().to_string();
+    assert!(
+        message.contains("announces 3 triangles") && message.contains("hold 92"),
+        "{message}"
+    );
+}
+
+#[test]
+fn obj_of_gmsh_gives_the_box() {
+    let loaded = load(data("box.obj"), 1.0).unwrap();
+    assert_eq!(loaded.format, Format::Obj);
+    assert_is_the_box(&loaded.mesh, 1e-10);
+}
+
+/// Groups, negative indices, normals, polygons, comments, CRLF, lines.
+#[test]
+fn obj_cuts_polygons_and_counts_back_from_the_end() {
+    let text = "# a pyramid\r\no hull\r\nv 0 0 0\r\nv 0 1 0\r\nv 1 1 0 # base\r\nv 1 0 0\r\n\
+                v 0.5 0.5 1\r\nvn 0 0 1\r\nf 1/1/1 2//1 3 4\r\ng sides\r\nf -5 -2 -1\r\nf 4 3 5\r\n\
+                f 3 2 5\r\nf 2 1 5\r\ng rim\r\nl 1 2 3\r\n";
+    let mesh = parse_bytes(text.as_bytes()).unwrap().mesh;
+    assert_eq!(mesh.triangles.len(), 6);
+    assert_eq!(mesh.surface("hull").unwrap().triangles, [0, 1]);
+    assert_eq!(mesh.surface("sides").unwrap().triangles, [2, 3, 4, 5]);
+    assert_eq!(mesh.curve("rim").unwrap().edges, [[0, 1], [1, 2]]);
+    // Base 1 m², height 1 m.
+    assert!((mesh.volume() - 1.0 / 3.0).abs() < 1e-15);
+    let pentagon = "v 0 0 0\nv 2 0 0\nv 3 1 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n";
+    let mesh = parse_bytes(pentagon.as_bytes()).unwrap().mesh;
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
+}
+
+/// A rhombus has angles of 60° and 120°: the short diagonal leaves 60°
+/// triangles, the long one 30°.
+#[test]
+fn quadrilaterals_are_cut_along_the_better_diagonal() {
+    let text = "v 0 0 0\nv 1 0 0\nv 1.5 0.8660254 0\nv 0.5 0.8660254 0\nf 1 2 3 4\nf 2 3 4 1\n";
+    let mesh = parse_bytes(text.as_bytes()).unwrap().mesh;
+    assert!(
+        mesh.triangles
+            .iter()
+            .all(|t| t.contains(&1) && t.contains(&3)),
+        "{:?}",
+        mesh.triangles
+    );
+}
+
+#[test]
+fn gzip_is_seen_through() {
+    for name in MSH
+        .iter()
+        .chain(&["box_ascii.stl", "box_binary.stl", "box.obj"])
+    {
+        let plain = std::fs::read(data(name)).unwrap();
+        let path =
+            std::env::temp_dir().join(format!("fladder-{}-{name}.gz", std::process::id()));
+        let mut encoder = flate2::write::GzEncoder::new(
+            std::fs::File::create(&path).unwrap(),
+            flate2::Compression::fast(),
+        );
+        encoder.write_all(&plain).unwrap();
+        encoder.finish().unwrap();
+        let packed = load(&path, 1.0).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        assert_eq!(packed, load(data(name), 1.0).unwrap());
+    }
+}
+
+#[test]
+fn scale_turns_file_units_into_metres() {
+    let metres = load(data("box_41_binary.msh"), 1.0).unwrap().mesh;
+    let millimetres = load(data("box_41_binary.msh"), 1e-3).unwrap().mesh;
+    assert!((millimetres.volume() / metres.volume() - 1e-9).abs() < 1e-20);
+    for bad in [0.0, -1.0, f64::NAN] {
+        assert!(matches!(
+            load(data("box.obj"), bad),
+            Err(ReadError::Scale(_))
+        ));
+    }
+}
+
+#[test]
+fn what_is_written_is_read_back_bit_for_bit() {
+    let wing = NacaWing {
+        sweep_deg: 30.0,
+        ..NacaWing::default()
+    };
+    let mut meshes = vec![
+        icosphere(3),
+        wing.structured().unwrap(),
+        wing.unstructured(4).unwrap(),
+    ];
+    // Overlapping and interleaved groups, and triangles of no group.
+    let mut mixed = icosphere(2);
+    mixed.surfaces[0].triangles.retain(|t| t % 3 == 0);
+    mixed.surfaces.push(fladder_mesh::SurfaceGroup {
+        name: "every other".into(),
+        triangles: (0..80).step_by(2).collect(),
+    });
+    meshes.push(mixed);
+    meshes.push(load(data("box_41_ascii.msh"), 1.0).unwrap().mesh);
+    for mesh in meshes {
+        let mut bytes = Vec::new();
+        write::msh41(&mut bytes, &mesh).unwrap();
+        let back = parse_bytes(&bytes).unwrap();
+        assert_eq!(back.mesh, mesh);
+        assert_eq!(back.notes, Vec::<String>::new());
+    }
+}
+
+#[test]
+fn a_written_stl_has_the_same_volume_in_single_precision() {
+    let mesh = icosphere(6);
+    let mut bytes = Vec::new();
+    write::stl(&mut bytes, &mesh).unwrap();
+    let back = parse_bytes(&bytes).unwrap().mesh;
+    assert_eq!(
+        (back.vertices.len(), back.triangles.len()),
+        (mesh.vertices.len(), mesh.triangles.len())
+    );
+    assert!((back.volume() - mesh.volume()).abs() < 1e-6);
+}
+
+/// Message of a file that must be refused.
+fn refusal(bytes: &[u8]) -> String {
+    parse_bytes(bytes).unwrap_err().to_string()
+}
+
+#[test]
+fn versions_and_elements_that_are_not_read_are_named() {
+    let file = |name: &str| std::fs::read(data(name)).unwrap();
+    for (name, said) in [
+        (
+            "box_40.msh",
+            "line 2: format version `4` is not read; save as version 4.1 or 2.2",
+        ),
+        ("box_10.msh", "format version 1"),
+        ("box_order2.msh", "3-node line"),
+    ] {
+        let message = refusal(&file(name));
+        assert!(message.contains(said), "{message}");
+    }
+    let mut other_order = file("box_41_binary.msh");
+    let at = other_order
+        .windows(7)
+        .position(|w| w == b"4.1 1 8")
+        .unwrap()
+        + 8;
+    other_order[at..at + 4].reverse();
+    assert!(refusal(&other_order).contains("other byte order"));
+    assert!(refusal(b"ply\nformat ascii 1.0\n").contains("PLY"));
+    assert!(refusal(b"").contains("empty"));
+    assert!(refusal(b"hello world\n").contains("none of"));
+}
+
+#[test]
+fn a_wrong_number_is_reported_with_its_line() {
+    let text = String::from_utf8(std::fs::read(data("box_22_ascii.msh")).unwrap()).unwrap();
+    let line = text.lines().position(|line| line == "2 0 0 0.5").unwrap() + 1;
+    let message = refusal(text.replace("\n2 0 0 0.5\n", "\n2 0 0 0,5\n").as_bytes());
+    assert!(
+        message.starts_with(&format!("memory, line {line}: `0,5` is not a number")),
+        "{message}"
+    );
+    let message = refusal(b"v 0 0 0\nv 1 0 0\nv 0 1 zero\nf 1 2 3\n");
+    assert!(
+        message.starts_with("memory, line 3: `zero` is not a number"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_hostile_count_is_refused_against_the_file_size() {
+    let text = String::from_utf8(std::fs::read(data("box_22_ascii.msh")).unwrap()).unwrap();
+    let message = refusal(
+        text.replace("$Nodes\n48\n", "$Nodes\n4000000000\n")
+            .as_bytes(),
+    );
+    assert!(
+        message.contains("4000000000 records are announced"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_node_that_is_not_there_is_passed_on_and_noted() {
+    let loaded = parse_bytes(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 9\n").unwrap();
+    assert_eq!(
+        loaded.mesh.triangles[1],
+        [0, 1, fladder_mesh::read::MISSING_VERTEX]
+    );
+    assert!(
+        loaded.notes[0].contains("line 5 names vertex 9"),
+        "{:?}",
+        loaded.notes
+    );
+}
+
+#[test]
+fn unused_vertices_are_dropped_and_said() {
+    let loaded = parse_bytes(b"v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n").unwrap();
+    assert_eq!(loaded.mesh.vertices.len(), 3);
+    assert_eq!(
+        loaded.notes,
+        ["1 vertices that no triangle uses were dropped"]
+    );
+}
+
+/// Truncated at every length and with bytes changed, no reader panics, and a
+/// text or size that no longer fits is refused, not half read.
+#[test]
+fn damaged_files_never_panic() {
+    let mut n_refused = 0;
+    let mut n_tried = 0;
+    let mut random = 1_u64;
+    let mut next = move |below: usize| {
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (random >> 33) as usize % below
+    };
+    for name in MSH.iter().chain(&[
+        "box_ascii.stl",
+        "box_binary.stl",
+        "box.obj",
+        "box_order2.msh",
+    ]) {
+        let whole = std::fs::read(data(name)).unwrap();
+        for length in 0..whole.len() {
+            let outcome = parse_bytes(&whole[..length]);
+            n_tried += 1;
+            n_refused += usize::from(outcome.is_err());
+            let has_end_mark = !name.ends_with(".obj");
+            // The very last bytes are the newline after the end mark.
+            assert!(
+                outcome.is_err() || !has_end_mark || length + 40 > whole.len(),
+                "{name} cut to {length}"
+            );
+        }
+        for _ in 0..2000 {
+            let mut bytes = whole.clone();
+            for _ in 0..=next(3) {
+                let at = next(bytes.len());
+                bytes[at] = if next(2) == 0 {
+                    bytes[at] ^ (1 << next(8))
+                } else {
+                    next(256) as u8
+                };
+            }
+            n_tried += 1;
+            n_refused += usize::from(parse_bytes(&bytes).is_err());
+        }
+    }
+    println!("{n_tried} damaged files, {n_refused} refused");
+    assert!(n_refused > n_tried / 2);
+}
