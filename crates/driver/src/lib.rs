@@ -2,5 +2,6 @@
 //! progress, reports, and the command line.
 
 pub mod atmosphere;
+pub mod cache;
 pub mod case;
 pub mod failure;
