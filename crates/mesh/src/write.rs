@@ -23,7 +23,8 @@ pub fn msh41(mut out: impl Write, mesh: &TriMesh) -> io::Result<()> {
     physical_names(&mut out, mesh)?;
     entities(&mut out, mesh, &surfaces)?;
     nodes(&mut out, mesh)?;
-    elements(&mut out, mesh, &surfaces)
+    elements(&mut out, mesh, &surfaces)?;
+    out.flush()
 }
 
 /// Writes a file of triangles without vertices, names or full precision.
@@ -42,7 +43,8 @@ pub fn stl(mut out: impl Write, mesh: &TriMesh) -> io::Result<()> {
         }
     });
     let triangles: Vec<stl_io::Triangle> = triangles.collect();
-    stl_io::write_stl(&mut out, triangles.iter())
+    stl_io::write_stl(&mut out, triangles.iter())?;
+    out.flush()
 }
 
 /// The sets of surface groups that occur, and which one each triangle has.

@@ -1,4 +1,5 @@
 //! Every format that is read, from files of another program and from our own.
+#![allow(clippy::unwrap_used, reason = "a failed read fails the test")]
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -393,7 +394,7 @@ fn damaged_files_never_panic() {
             let outcome = parse_bytes(&whole[..length]);
             n_tried += 1;
             n_refused += usize::from(outcome.is_err());
-            let has_end_mark = !name.ends_with(".obj");
+            let has_end_mark = *name != "box.obj";
             // The very last bytes are the newline after the end mark.
             assert!(
                 outcome.is_err() || !has_end_mark || length + 40 > whole.len(),

@@ -1,0 +1,155 @@
+//! Meshes of analytic shapes.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+use fladder_mesh::shapes::{Extent, NacaWing, ShapeError, Tip, ellipsoid};
+use fladder_mesh::{TriMesh, write};
+
+/// A shape and its dimensions.
+#[derive(Subcommand)]
+pub(crate) enum Shape {
+    /// Wing of symmetric NACA four-digit section; groups `wing` and `te`
+    Wing(Wing),
+    /// Sphere from the icosahedron; group `body`
+    Sphere {
+        /// Radius, m
+        #[arg(long, default_value_t = 1.0)]
+        radius: f64,
+        #[command(flatten)]
+        cut: Cut,
+    },
+    /// Ellipsoid, a stretched sphere; group `body`
+    Ellipsoid {
+        /// Semi-axes along x, y, z, m
+        #[arg(long, num_args = 3, value_names = ["X", "Y", "Z"], required = true)]
+        semi_axes: Vec<f64>,
+        #[command(flatten)]
+        cut: Cut,
+    },
+}
+
+/// How finely a sphere is cut, and where it goes.
+#[derive(Args)]
+pub(crate) struct Cut {
+    /// Triangles along an edge of the icosahedron: 20 N² in all
+    #[arg(short, default_value_t = 8)]
+    n: usize,
+    /// File to write
+    out: PathBuf,
+}
+
+/// Dimensions and cells of a wing.
+#[derive(Args)]
+pub(crate) struct Wing {
+    /// Thickness over chord
+    #[arg(long, default_value_t = 0.12)]
+    thickness: f64,
+    /// Root chord, m
+    #[arg(long, default_value_t = 1.0)]
+    chord: f64,
+    /// Span of the whole wing, m
+    #[arg(long, default_value_t = 8.0)]
+    span: f64,
+    /// Sweep of the leading edge, degrees
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    sweep_deg: f64,
+    /// Tip chord over root chord
+    #[arg(long, default_value_t = 1.0)]
+    taper: f64,
+    /// Cells from leading to trailing edge on each side
+    #[arg(long, default_value_t = 12)]
+    n_chord: usize,
+    /// Cells from root to tip
+    #[arg(long, default_value_t = 16)]
+    n_half_span: usize,
+    /// How the wing ends
+    #[arg(long, value_enum, default_value_t = TipShape::Flat)]
+    tip: TipShape,
+    /// Only the half on y >= 0, open at y = 0
+    #[arg(long)]
+    half: bool,
+    /// Irregular points from this seed, upper and lower side not matched
+    #[arg(long, value_name = "SEED")]
+    unstructured: Option<u64>,
+    /// File to write
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum TipShape {
+    /// Cut off square
+    Flat,
+    /// Upper and lower side meet
+    Sharp,
+}
+
+/// Why no mesh was written.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum MeshError {
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+}
+
+impl Shape {
+    /// Writes the file and says what is in it.
+    pub(crate) fn write(self) -> Result<String, MeshError> {
+        let (mesh, path) = match self {
+            Self::Wing(wing) => (wing.mesh()?, wing.out),
+            Self::Sphere { radius, cut } => (ellipsoid([radius; 3], cut.n), cut.out),
+            Self::Ellipsoid { semi_axes, cut } => (
+                ellipsoid([semi_axes[0], semi_axes[1], semi_axes[2]], cut.n),
+                cut.out,
+            ),
+        };
+        File::create(&path)
+            .and_then(|file| write::msh41(BufWriter::new(file), &mesh))
+            .map_err(|source| MeshError::Write {
+                path: path.clone(),
+                source,
+            })?;
+        Ok(format!(
+            "{}: {} vertices, {} triangles, area {:.6} m², volume {:.6} m³",
+            path.display(),
+            mesh.vertices.len(),
+            mesh.triangles.len(),
+            mesh.area(),
+            mesh.volume()
+        ))
+    }
+}
+
+impl Wing {
+    fn mesh(&self) -> Result<TriMesh, ShapeError> {
+        let wing = NacaWing {
+            thickness: self.thickness,
+            chord: self.chord,
+            span: self.span,
+            sweep_deg: self.sweep_deg,
+            taper: self.taper,
+            n_chord: self.n_chord,
+            n_half_span: self.n_half_span,
+            tip: match self.tip {
+                TipShape::Flat => Tip::Flat,
+                TipShape::Sharp => Tip::Sharp,
+            },
+            extent: if self.half {
+                Extent::Half
+            } else {
+                Extent::Full
+            },
+            ..NacaWing::default()
+        };
+        match self.unstructured {
+            Some(seed) => wing.unstructured(seed),
+            None => wing.structured(),
+        }
+    }
+}
