@@ -5,3 +5,7 @@ pub mod atmosphere;
 pub mod cache;
 pub mod case;
 pub mod failure;
+pub mod files;
+pub mod gaf_json;
+pub mod json;
+pub mod plot;
