@@ -4,6 +4,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use fladder_mesh::judge::{Settings, judge};
 use fladder_mesh::read::{Format, Loaded, ReadError, load, parse};
 use fladder_mesh::shapes::{NacaWing, icosphere};
 use fladder_mesh::{Topology, TriMesh, write};
@@ -366,8 +367,14 @@ fn unused_vertices_are_dropped_and_said() {
     assert_eq!(loaded.mesh.vertices.len(), 3);
     assert_eq!(
         loaded.notes,
-        ["1 vertices that no triangle uses were dropped"]
+        ["vertices that no triangle uses were dropped: 1"]
     );
+}
+
+/// What is read is judged too, to see that the judge survives it.
+fn parse_and_judge(bytes: &[u8]) -> Result<TriMesh, ReadError> {
+    let mesh = parse_bytes(bytes)?.mesh;
+    Ok(judge(mesh, Settings::default()).mesh)
 }
 
 /// Truncated at every length and with bytes changed, no reader panics, and a
@@ -391,7 +398,7 @@ fn damaged_files_never_panic() {
     ]) {
         let whole = std::fs::read(data(name)).unwrap();
         for length in 0..whole.len() {
-            let outcome = parse_bytes(&whole[..length]);
+            let outcome = parse_and_judge(&whole[..length]);
             n_tried += 1;
             n_refused += usize::from(outcome.is_err());
             let has_end_mark = *name != "box.obj";
@@ -412,9 +419,49 @@ fn damaged_files_never_panic() {
                 };
             }
             n_tried += 1;
-            n_refused += usize::from(parse_bytes(&bytes).is_err());
+            n_refused += usize::from(parse_and_judge(&bytes).is_err());
         }
     }
     println!("{n_tried} damaged files, {n_refused} refused");
     assert!(n_refused > n_tried / 2);
+}
+
+/// Random triangles over few vertices, some not finite or far out, with bad
+/// indices: hardly ever a surface, never a panic.
+mod hostile {
+    use fladder_mesh::Vec3;
+    use proptest::prelude::*;
+
+    use super::{Settings, TriMesh, judge};
+
+    fn coordinate() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            8 => -1.0..1.0,
+            4 => (-2..3).prop_map(f64::from),
+            1 => any::<f64>(),
+            1 => Just(f64::NAN),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn any_triangles_are_judged_without_a_panic(
+            points in prop::collection::vec([coordinate(), coordinate(), coordinate()], 0..12),
+            triangles in prop::collection::vec([0..14_u32, 0..14, 0..14], 0..40),
+            symmetry_plane in any::<bool>(),
+        ) {
+            let n_triangles = triangles.len();
+            let mesh = TriMesh {
+                vertices: points.into_iter().map(Vec3::from).collect(),
+                triangles,
+                ..TriMesh::default()
+            };
+            let judgement = judge(mesh, Settings { symmetry_plane, ..Settings::default() });
+            prop_assert_eq!(judgement.mesh.triangles.len(), n_triangles);
+            for fault in &judgement.faults {
+                prop_assert!(!fault.message().is_empty());
+            }
+        }
+    }
 }

@@ -136,7 +136,7 @@ impl Draft {
         let dropped = self.vertices.len() - vertices.len();
         if dropped > 0 {
             self.notes.push(format!(
-                "{dropped} vertices that no triangle uses were dropped"
+                "vertices that no triangle uses were dropped: {dropped}"
             ));
         }
         let at = |v: u32| image.get(v as usize).copied().unwrap_or(MISSING_VERTEX);
@@ -177,7 +177,7 @@ impl Draft {
                 .collect();
             if edges.len() < n_lines {
                 self.notes.push(format!(
-                    "{} of {n_lines} lines of curve group `{name}` end on vertices that no triangle uses and were dropped",
+                    "lines of curve group `{name}` that end off the surface were dropped: {} of {n_lines}",
                     n_lines - edges.len()
                 ));
             }

@@ -197,7 +197,7 @@ impl Gathered {
         draft.note_places("nodes that are not in the file", &missing);
         if self.n_volume_elements > 0 {
             draft.notes.push(format!(
-                "{} volume elements were passed over",
+                "volume elements were passed over: {}",
                 self.n_volume_elements
             ));
         }
