@@ -118,6 +118,14 @@ pub enum LaplaceError {
         /// Reduced frequency.
         k: f64,
     },
+    /// The motion decays so fast that the far wake's integral loses its digits.
+    #[error("at g = {g}, k = {k} the motion decays too fast for the far wake to be integrated; take g nearer to 0")]
+    TooDamped {
+        /// Reduced damping.
+        g: f64,
+        /// Reduced frequency.
+        k: f64,
+    },
     /// The jump equations are singular: a pole of Q.
     #[error("the wake equations are singular at g = {g}, k = {k}")]
     Singular {

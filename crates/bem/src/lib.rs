@@ -27,6 +27,8 @@ mod boundary;
 mod contour;
 mod cut;
 mod dense;
+#[cfg(test)]
+mod direct;
 mod error;
 mod far_wake;
 mod galerkin;

@@ -150,7 +150,8 @@ fn rayon_threads() -> f64 {
     rayon::current_num_threads() as f64
 }
 
-fn lay_out(problem: &Problem<'_>) -> Result<(CutSurface, Wake), BemError> {
+/// The cut surface and the wake of a problem.
+pub(crate) fn lay_out(problem: &Problem<'_>) -> Result<(CutSurface, Wake), BemError> {
     cut_and_wake(
         problem.mesh,
         problem.trailing_edges,

@@ -149,7 +149,8 @@ impl TransferModel {
     /// conjugate; on the real axis real.
     ///
     /// # Errors
-    /// [`LaplaceError`] on the cut, for values that are no numbers, and at a pole.
+    /// [`LaplaceError`] on the cut, for values that are no numbers, at a pole, and where the
+    /// motion decays too fast (beyond about |g| = 12 b / reach, reach the wake's width).
     pub fn q(&self, p: c64) -> Result<Mat<c64>, LaplaceError> {
         let (g, k) = (p.re, p.im);
         if !g.is_finite() || !k.is_finite() {
@@ -159,6 +160,9 @@ impl TransferModel {
             return Err(LaplaceError::BranchCut { g });
         }
         let s = c64::new(g, k.abs()) / self.semichord;
+        if self.columns > 0 && !Path::keeps_digits(&self.far(s).nodes, s) {
+            return Err(LaplaceError::TooDamped { g, k });
+        }
         let mut q = self.evaluate(s).ok_or(LaplaceError::Singular { g, k })?;
         for j in 0..self.modes {
             for i in 0..self.modes {

@@ -178,6 +178,51 @@ impl WakeInfluence<'_> {
     }
 }
 
+#[cfg(test)]
+impl WakeInfluence<'_> {
+    /// T W(s) of all columns, for the direct solve that checks the reduced model.
+    pub(crate) fn tested_wake(&self, s: c64, columns: usize) -> Mat<c64> {
+        let argument = s.arg().to_degrees();
+        let paths = &self.wake.paths;
+        let path = if argument <= crate::contour::SECTOR_LIMIT_DEG {
+            &paths.oscillating
+        } else {
+            &paths.decaying
+        };
+        let mut evaluator = Evaluator::new(self);
+        let mut near = vec![0.0; self.wake.slots.len()];
+        let nodes = path.nodes.len();
+        let mut far = vec![c64::new(0.0, 0.0); self.wake.far.anchors.len() * nodes];
+        let mut tested = Mat::zeros(self.galerkin.n_vertices, columns);
+        for t in 0..self.galerkin.n_triangles() {
+            for q in 0..3 {
+                evaluator.near_row(t, q, &mut near);
+                evaluator.far_row(t, q, path, &mut far);
+                let mut row = vec![c64::new(0.0, 0.0); columns];
+                for (slot, value) in self.wake.slots.iter().zip(&near) {
+                    for &(column, weight) in &self.wake.threads[slot.thread] {
+                        row[column] += weight * value * (-s * slot.xi).exp();
+                    }
+                }
+                for (values, &thread) in far.chunks_exact(nodes).zip(&self.wake.far_threads) {
+                    for (value, xi) in values.iter().zip(&path.nodes) {
+                        for &(column, weight) in &self.wake.threads[thread] {
+                            row[column] += weight * value * (-s * xi).exp();
+                        }
+                    }
+                }
+                for (corner, &v) in self.galerkin.triangles[t].iter().enumerate() {
+                    let weight = self.galerkin.test_weight(t, q, corner);
+                    for (c, value) in row.iter().enumerate() {
+                        tested[(v as usize, c)] += weight * value;
+                    }
+                }
+            }
+        }
+        tested
+    }
+}
+
 /// Working space of one thread.
 struct Evaluator<'a> {
     of: &'a WakeInfluence<'a>,

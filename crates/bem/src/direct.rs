@@ -1,0 +1,192 @@
+//! The whole complex system at one s, solved without reduction: oracle of the transfer
+//! model. Everything of the wake is summed at every test point before it is tested.
+
+use crate::boundary::ModeFields;
+use crate::galerkin::{Galerkin, POINTS};
+use crate::pressure::Functionals;
+use crate::progress::Silent;
+use crate::solve::{Flow, Problem, WakeDirection, lay_out, solve};
+use crate::steady::UnitOnsets;
+use crate::transfer::solve_complex;
+use crate::wake_influence::WakeInfluence;
+use faer::{Mat, c64};
+use fladder_mesh::shapes::NacaWing;
+use fladder_mesh::{Frame, SurfaceMode, Topology, Vec3, trailing_edge};
+
+fn complex(matrix: &Mat<f64>) -> Mat<c64> {
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
+}
+
+/// Q(p) of a problem whose surface has no body lines, by the full complex system.
+fn direct(problem: &Problem<'_>, p: c64) -> Mat<c64> {
+    let (surface, wake) = lay_out(problem).expect("wake");
+    let stream = problem.flow.stream();
+    let galerkin = Galerkin::new(&surface);
+    let fields = ModeFields::new(&galerkin, &surface.source, problem.modes, stream);
+    let sources = fields.sources(&galerkin);
+    let assembly = galerkin.assemble(sources.as_ref(), &Silent).expect("assembled");
+    let n = galerkin.n_vertices;
+    let body = Mat::from_fn(n, n, |i, j| assembly.rows[i * n + j]);
+    let influence =
+        WakeInfluence { galerkin: &galerkin, wake: &wake, free_terms: &assembly.free_terms };
+    let system_at = |s: c64| {
+        let tested = influence.tested_wake(s, surface.columns.len());
+        let mut system = complex(&body);
+        for (j, column) in surface.columns.iter().enumerate() {
+            for i in 0..n {
+                system[(i, column.upper as usize)] -= tested[(i, j)];
+                system[(i, column.lower as usize)] += tested[(i, j)];
+            }
+        }
+        system
+    };
+    let m = fields.count;
+    let e = fields.inertial.len();
+    let steady = solve_complex(
+        system_at(c64::new(0.0, 0.0)),
+        complex(&assembly.right_hand_sides.subcols(m + e, 3).to_owned()),
+    )
+    .expect("regular");
+    let steady = Mat::from_fn(n, 3, |i, j| steady[(i, j)].re);
+    let jumps = Mat::from_fn(surface.columns.len(), 3, |j, a| {
+        let column = surface.columns[j];
+        steady[(column.upper as usize, a)] - steady[(column.lower as usize, a)]
+    });
+    let onsets = UnitOnsets::new(&galerkin, &wake, &steady, jumps);
+    let functionals = Functionals::new(&galerkin, &fields, &onsets, &wake, stream);
+    let s = p / problem.semichord;
+    let right = Mat::from_fn(n, m, |i, j| {
+        let zero = fields.inertial.iter().position(|&k| k == j);
+        let zero = zero.map_or(0.0, |k| assembly.right_hand_sides[(i, m + k)]);
+        s * assembly.right_hand_sides[(i, j)] + zero
+    });
+    let phi = solve_complex(system_at(s), right).expect("regular");
+    Mat::from_fn(m, m, |i, j| {
+        let mut sum = s * functionals.c1[(i, j)] + functionals.c0[(i, j)];
+        for v in 0..n {
+            sum += (functionals.p0[(v, i)] + s * functionals.p1[(v, i)]) * phi[(v, j)];
+        }
+        2.0 * sum
+    })
+}
+
+fn modes(vertices: &[Vec3]) -> Vec<SurfaceMode> {
+    let mode = |name: &str, frame, field: fn(&Vec3) -> Vec3| SurfaceMode {
+        name: name.into(),
+        frame,
+        displacement: vertices.iter().map(field).collect(),
+    };
+    vec![
+        mode("plunge", Frame::Body, |_| Vec3::z()),
+        mode("pitch", Frame::Inertial, |x| Vec3::new(x.z, 0.0, 0.5 - x.x)),
+        mode("bending", Frame::Inertial, |x| Vec3::new(0.0, 0.0, x.y * x.y / 16.0)),
+    ]
+}
+
+#[test]
+fn the_reduced_model_equals_the_complex_solve() {
+    let wing = NacaWing { n_chord: 6, n_half_span: 4, sweep_deg: 20.0, ..NacaWing::default() };
+    let mesh = wing.structured().expect("wing");
+    let edges = trailing_edge::find_by_shape(
+        &mesh,
+        &Topology::new(&mesh),
+        trailing_edge::Settings::default(),
+    );
+    let modes = modes(&mesh.vertices);
+    let problem = Problem {
+        mesh: &mesh,
+        trailing_edges: &edges,
+        modes: &modes,
+        flow: Flow { alpha: 0.05, beta: 0.02 },
+        wake_direction: WakeDirection::Freestream,
+        body_lines: &[],
+        semichord: 0.5,
+        moment_point: Vec3::zeros(),
+    };
+    let solution = solve(&problem, &Silent).expect("solved");
+    for p in [
+        c64::new(0.0, 0.3),
+        c64::new(-0.1, 0.3),
+        c64::new(-0.1, 0.02),
+        c64::new(0.1, 0.05),
+        c64::new(0.0, 0.0),
+    ] {
+        let (reduced, full) = (solution.transfer.q(p).expect("Q"), direct(&problem, p));
+        let difference = (&reduced - &full).norm_max() / full.norm_max();
+        println!("p = {p}: reduced against direct {difference:.1e}");
+        assert!(difference < 1e-10);
+    }
+}
+
+/// Q is analytic: its derivatives along g and along k agree (Cauchy–Riemann).
+#[test]
+fn q_is_analytic_in_the_laplace_plane() {
+    let wing = NacaWing { n_chord: 6, n_half_span: 4, ..NacaWing::default() };
+    let mesh = wing.structured().expect("wing");
+    let edges = trailing_edge::find_by_shape(
+        &mesh,
+        &Topology::new(&mesh),
+        trailing_edge::Settings::default(),
+    );
+    let modes = modes(&mesh.vertices);
+    let problem = Problem {
+        mesh: &mesh,
+        trailing_edges: &edges,
+        modes: &modes,
+        flow: Flow::default(),
+        wake_direction: WakeDirection::Freestream,
+        body_lines: &[],
+        semichord: 0.5,
+        moment_point: Vec3::zeros(),
+    };
+    let transfer = solve(&problem, &Silent).expect("solved").transfer;
+    let h = 1e-4;
+    for (p, limit) in [
+        (c64::new(0.0, 0.3), 1e-5),
+        (c64::new(-0.05, 0.3), 1e-5),
+        (c64::new(0.1, 0.3), 1e-5),
+        (c64::new(-0.1, 0.3), 1e-5),
+        (c64::new(-0.1, 0.06), 1e-4),
+    ] {
+        let q = |p: c64| transfer.q(p).expect("Q");
+        let along_g = (q(p + h) - q(p - h)) * faer::Scale(c64::new(0.5 / h, 0.0));
+        let along_k = (q(p + c64::new(0.0, h)) - q(p - c64::new(0.0, h)))
+            * faer::Scale(c64::new(0.0, -0.5 / h));
+        let residual = (&along_g - &along_k).norm_max() / along_g.norm_max();
+        println!("p = {p}: Cauchy–Riemann residual {residual:.1e}");
+        assert!(residual < limit);
+        let conjugate = q(p.conj());
+        for j in 0..3 {
+            for i in 0..3 {
+                assert_eq!(conjugate[(i, j)], q(p)[(i, j)].conj());
+            }
+        }
+    }
+}
+
+/// A closed surface has Σ D = −1/2 at interior points of its triangles.
+#[test]
+fn double_layer_row_sums_are_minus_one_half() {
+    for mesh in [
+        fladder_mesh::shapes::icosphere(6),
+        NacaWing { thickness: 0.03, n_chord: 12, n_half_span: 6, ..NacaWing::default() }
+            .structured()
+            .expect("wing"),
+    ] {
+        let panels = crate::panels::PanelSet::new(&mesh.vertices, &mesh.triangles);
+        let mut scratch = panels.scratch();
+        let mut values = vec![[0.0; 3]; panels.len()];
+        let mut worst = 0.0_f64;
+        for t in 0..mesh.triangles.len() {
+            let p = mesh.corners(t);
+            for b in POINTS {
+                let point = b[0] * p[0] + b[1] * p[1] + b[2] * p[2];
+                panels.doublets(point, &mut scratch, &mut values);
+                let sum: f64 = values.as_flattened().iter().sum();
+                worst = worst.max((sum + 0.5).abs());
+            }
+        }
+        println!("{} triangles: row sums to {worst:.1e}", mesh.triangles.len());
+        assert!(worst < 1e-12);
+    }
+}
