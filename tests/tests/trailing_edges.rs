@@ -18,7 +18,12 @@ fn true_edges(mesh: &TriMesh, topology: &Topology, wing: &NacaWing) -> BTreeSet<
         let p = mesh.vertices[v as usize];
         (p.x - p.y.abs() * slope - wing.chord).abs() < 1e-9 * wing.chord
     };
-    topology.edges.iter().filter(|edge| edge.iter().all(|&v| is_aft(v))).copied().collect()
+    topology
+        .edges
+        .iter()
+        .filter(|edge| edge.iter().all(|&v| is_aft(v)))
+        .copied()
+        .collect()
 }
 
 /// Panics when the edges found are not those of the wing.
@@ -30,10 +35,16 @@ fn assert_finds_the_trailing_edge(mesh: &TriMesh, wing: &NacaWing) {
     let expected = true_edges(mesh, &topology, wing);
     let extra: Vec<_> = found.difference(&expected).collect();
     let lost: Vec<_> = expected.difference(&found).collect();
-    assert!(extra.is_empty() && lost.is_empty(), "{wing:?}: extra {extra:?}, lost {lost:?}");
+    assert!(
+        extra.is_empty() && lost.is_empty(),
+        "{wing:?}: extra {extra:?}, lost {lost:?}"
+    );
     assert_eq!(expected.len(), 2 * wing.n_half_span);
     assert_eq!(chains.len(), 1, "{wing:?}");
-    assert_eq!(find_from_groups(mesh, &topology, &["te"]).as_ref(), Ok(&chains));
+    assert_eq!(
+        find_from_groups(mesh, &topology, &["te"]).as_ref(),
+        Ok(&chains)
+    );
 }
 
 #[test]

@@ -31,8 +31,9 @@ pub fn weld(points: &[Vec3], relative: f64) -> Weld {
     let first = finite.next().copied().unwrap_or_default();
     let (low, high) = finite.fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
     let tolerance = relative * (high - low).norm();
-    // Cells far wider than the tolerance: nearly all points touch one only.
-    let width = 1000.0 * tolerance;
+    // Kept points are a tolerance apart, so that few fit into a cell, and most
+    // points reach into one cell only.
+    let width = 8.0 * tolerance;
     let cell = |x: f64| {
         if width > 0.0 {
             (x / width).floor() as i64

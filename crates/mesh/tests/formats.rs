@@ -362,6 +362,25 @@ fn a_node_that_is_not_there_is_passed_on_and_noted() {
 }
 
 #[test]
+fn a_coordinate_that_is_no_number_is_passed_on_and_its_line_noted() {
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 nan 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    let text = String::from_utf8(std::fs::read(data("box_22_ascii.msh")).unwrap()).unwrap();
+    let line = text.lines().position(|line| line == "2 0 0 0.5").unwrap() + 1;
+    let msh = text.replace("\n2 0 0 0.5\n", "\n2 0 inf 0.5\n");
+    for (text, line, vertex) in [(obj, 3, 2), (&msh, line, 1)] {
+        let loaded = parse_bytes(text.as_bytes()).unwrap();
+        assert_eq!(
+            loaded.notes,
+            [format!(
+                "coordinates that are no finite numbers: line {line}"
+            )]
+        );
+        assert!(!loaded.mesh.vertices[vertex].y.is_finite());
+        assert!(judge(loaded.mesh, Settings::default()).has_errors());
+    }
+}
+
+#[test]
 fn unused_vertices_are_dropped_and_said() {
     let loaded = parse_bytes(b"v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n").unwrap();
     assert_eq!(loaded.mesh.vertices.len(), 3);

@@ -105,6 +105,16 @@ pub enum Severity {
     Warning,
 }
 
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Error => "error",
+            Self::Repaired => "repaired",
+            Self::Warning => "warning",
+        })
+    }
+}
+
 /// A place in the mesh as it came in, all numbers from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Element {

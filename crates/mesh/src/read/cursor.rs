@@ -1,6 +1,8 @@
 //! A place in the bytes of a file, from which values are taken.
 
 use super::Place;
+use super::draft::SHOWN;
+use crate::Vec3;
 
 /// What a parser found wrong; the path is added outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +32,9 @@ pub(super) struct Cursor<'a> {
     at: usize,
     /// Whether numbers are binary from here on.
     pub(super) is_binary: bool,
+    /// The first few places of positions that are not finite.
+    not_finite: Vec<Place>,
+    n_not_finite: usize,
 }
 
 impl<'a> Cursor<'a> {
@@ -43,6 +48,8 @@ impl<'a> Cursor<'a> {
             bytes,
             at,
             is_binary: false,
+            not_finite: Vec::new(),
+            n_not_finite: 0,
         }
     }
 
@@ -52,17 +59,18 @@ impl<'a> Cursor<'a> {
         what: impl Into<String>,
         remedy: impl Into<String>,
     ) -> Malformed {
-        let place = if self.is_binary {
-            Place::Byte(self.at)
-        } else {
-            let before = &self.bytes[..self.at];
-            Place::Line(before.split(|&byte| byte == b'\n').count())
-        };
         Malformed {
-            place,
+            place: self.place(),
             what: what.into(),
             remedy: remedy.into(),
         }
+    }
+
+    fn place(&self) -> Place {
+        if self.is_binary {
+            return Place::Byte(self.at);
+        }
+        Place::Line(self.bytes[..self.at].split(|&byte| byte == b'\n').count())
     }
 
     /// Bytes not yet taken.
@@ -168,6 +176,36 @@ impl<'a> Cursor<'a> {
         }
     }
 
+    /// A position; where it is not finite, the place is kept for a note.
+    pub(super) fn position(&mut self) -> Result<Vec3, Malformed> {
+        let position = Vec3::new(self.double()?, self.double()?, self.double()?);
+        if !position.iter().all(|x| x.is_finite()) {
+            self.n_not_finite += 1;
+            // Finding the line reads the file from its start.
+            if self.not_finite.len() < SHOWN {
+                self.not_finite.push(self.place());
+            }
+        }
+        Ok(position)
+    }
+
+    /// Where positions were not finite, in words; empty when nowhere.
+    pub(super) fn note_of_not_finite(&self) -> Option<String> {
+        let places: Vec<String> = self.not_finite.iter().map(Place::to_string).collect();
+        let more = self.n_not_finite - places.len();
+        let more = if more > 0 {
+            format!(" and {more} more")
+        } else {
+            String::new()
+        };
+        (!places.is_empty()).then(|| {
+            format!(
+                "coordinates that are no finite numbers: {}{more}",
+                places.join(", ")
+            )
+        })
+    }
+
     /// Checks a count of records against what is left of the file, where each
     /// takes at least the given bytes in text or in binary.
     pub(super) fn count(
@@ -188,7 +226,7 @@ impl<'a> Cursor<'a> {
             })
     }
 
-    /// Moves past the next occurrence of `mark` at the start of a line.
+    /// Moves past the next occurrence of `mark`; false when there is none.
     pub(super) fn skip_past(&mut self, mark: &str) -> bool {
         let mark = mark.as_bytes();
         let found = self.bytes[self.at..]

@@ -7,7 +7,7 @@ use super::cursor::Malformed;
 use crate::{CurveGroup, SurfaceGroup, TriMesh, Vec3};
 
 /// At most this many single places are named in a note.
-const SHOWN: usize = 5;
+pub(super) const SHOWN: usize = 5;
 
 /// A surface whose vertices may be unused and whose lines may lie off it.
 #[derive(Clone, Debug, Default)]

@@ -28,7 +28,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Draft, Malformed> {
     if !file.has_elements {
         return Err(cursor.fault("the file ends before the $Elements section", WRITE_AGAIN));
     }
-    Ok(file.gathered.into_draft())
+    let mut draft = file.gathered.into_draft();
+    draft.notes.extend(cursor.note_of_not_finite());
+    Ok(draft)
 }
 
 /// What has been read of a file.

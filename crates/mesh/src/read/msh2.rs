@@ -4,13 +4,12 @@
 
 use super::cursor::{Cursor, Malformed, WRITE_AGAIN};
 use super::msh_elements::{Gathered, kind};
-use crate::Vec3;
 
 pub(super) fn nodes(cursor: &mut Cursor, gathered: &mut Gathered) -> Result<(), Malformed> {
     let announced = text_count(cursor)?;
     for _ in 0..cursor.count(announced, 8, 28)? {
         let tag = cursor.int()?;
-        let at = Vec3::new(cursor.double()?, cursor.double()?, cursor.double()?);
+        let at = cursor.position()?;
         gathered.add_node(cursor, node_tag(cursor, tag)?, at)?;
     }
     Ok(())

@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 
 use super::cursor::{Cursor, Malformed, WRITE_AGAIN};
 use super::msh_elements::{Gathered, kind};
-use crate::Vec3;
 
 /// Physical groups of every geometric entity, by dimension and tag.
 #[derive(Debug, Default)]
@@ -65,7 +64,7 @@ pub(super) fn nodes(cursor: &mut Cursor, gathered: &mut Gathered) -> Result<(), 
             .map(|_| cursor.size())
             .collect::<Result<Vec<u64>, _>>()?;
         for tag in tags {
-            let at = Vec3::new(cursor.double()?, cursor.double()?, cursor.double()?);
+            let at = cursor.position()?;
             for _ in 0..if is_parametric {
                 dimension.clamp(0, 3)
             } else {

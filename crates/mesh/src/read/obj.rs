@@ -16,6 +16,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Draft, Malformed> {
     // Indices may run ahead of the vertices, so that faces are cut at the end.
     let mut polygons: Vec<Polygon> = Vec::new();
     let mut group = String::new();
+    let mut not_finite = Vec::new();
     let mut number = 0;
     while let Some(line) = cursor.line() {
         number += 1;
@@ -26,7 +27,13 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Draft, Malformed> {
             .unwrap_or_default()
             .split_whitespace();
         match words.next() {
-            Some("v") => draft.vertices.push(vertex(words, number)?),
+            Some("v") => {
+                let position = vertex(words, number)?;
+                if !position.iter().all(|x| x.is_finite()) {
+                    not_finite.push(format!("line {number}"));
+                }
+                draft.vertices.push(position);
+            }
             Some("g" | "o") => group = words.collect::<Vec<_>>().join(" "),
             Some(word @ ("f" | "l")) => {
                 let n_vertices = draft.vertices.len();
@@ -54,6 +61,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Draft, Malformed> {
             Some(_) | None => {}
         }
     }
+    draft.note_places("coordinates that are no finite numbers", &not_finite);
     cut(&mut draft, polygons);
     Ok(draft)
 }

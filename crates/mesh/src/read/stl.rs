@@ -109,6 +109,7 @@ pub(super) fn parse_ascii(bytes: &[u8]) -> Result<Draft, Malformed> {
     if solid.is_some() {
         return Err(cursor.fault("the file ends inside a solid", WRITE_AGAIN));
     }
+    draft.notes.extend(cursor.note_of_not_finite());
     join(&mut draft, &corners);
     Ok(draft)
 }
@@ -125,7 +126,7 @@ fn facet(cursor: &mut Cursor) -> Result<[Vec3; 3], Malformed> {
     let mut corners = [Vec3::zeros(); 3];
     for corner in &mut corners {
         expect(cursor, "vertex")?;
-        *corner = Vec3::new(cursor.double()?, cursor.double()?, cursor.double()?);
+        *corner = cursor.position()?;
     }
     expect(cursor, "endloop")?;
     expect(cursor, "endfacet")?;

@@ -1,5 +1,6 @@
 //! Analytic bodies as meshes: spheres, ellipsoids and wings of NACA section.
 
+mod parts;
 mod sphere;
 mod unstructured;
 mod wing;

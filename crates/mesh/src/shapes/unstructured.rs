@@ -8,9 +8,8 @@
 
 use spade::{DelaunayTriangulation, InsertionError, Point2, Triangulation};
 
-use super::wing::{
-    Extent, NacaWing, ShapeError, Side, Tip, add_trailing_edge, cap_strip, with_wing_group,
-};
+use super::parts::{add_trailing_edge, cap_strip, with_wing_group};
+use super::wing::{Extent, NacaWing, ShapeError, Side, Tip};
 use crate::TriMesh;
 
 /// Largest displacement of a lattice point, in cells. Above about 0.3 points
@@ -33,6 +32,8 @@ impl Jitter {
         JITTER * (2.0 * unit - 1.0)
     }
 }
+
+const SIDES: [Side; 2] = [Side::Upper, Side::Lower];
 
 /// A vertex in cell coordinates, with its number in the mesh.
 type SheetPoint = (Point2<f64>, u32);
@@ -63,7 +64,7 @@ impl NacaWing {
         let leading = sheet.shared_edge(0.0, first, tip);
         let trailing = sheet.shared_edge(self.n_chord as f64, first, tip);
         let ends = |v: i64| [&leading, &trailing].map(|edge| edge[(v - first) as usize]);
-        let roots = [Side::Upper, Side::Lower].map(|side| sheet.section(side, 0, ends(0)));
+        let roots = SIDES.map(|side| sheet.section(side, 0, ends(0)));
         for outer in if first < 0 {
             vec![tip, first]
         } else {
@@ -77,17 +78,7 @@ impl NacaWing {
                 .filter(on_range)
                 .copied()
                 .collect();
-            let mut tips = Vec::new();
-            for (side, root) in [Side::Upper, Side::Lower].into_iter().zip(&roots) {
-                let section = sheet.section(side, outer, ends(outer));
-                let inside = |line: &[SheetPoint]| line[1..line.len() - 1].to_vec();
-                let border = [edges.clone(), inside(root), inside(&section)].concat();
-                sheet.fill(side, outer, border)?;
-                tips.push(section.iter().map(|point| point.1).collect::<Vec<u32>>());
-            }
-            let cap = cap_strip(&sheet.mesh.vertices, &tips[0], &tips[1]);
-            let outward = |[a, b, c]: [u32; 3]| if outer > 0 { [a, b, c] } else { [a, c, b] };
-            sheet.mesh.triangles.extend(cap.into_iter().map(outward));
+            sheet.add_half(outer, &edges, &roots, ends(outer))?;
         }
         for pair in trailing.windows(2) {
             add_trailing_edge(&mut sheet.mesh, pair[0].1, pair[1].1);
@@ -142,6 +133,30 @@ impl Sheet<'_> {
         }
         section.push(trailing);
         section
+    }
+
+    /// Both sides between the root and the tip at `outer`, and the cap there.
+    ///
+    /// `edges` are the vertices of the leading and trailing edge in that half.
+    fn add_half(
+        &mut self,
+        outer: i64,
+        edges: &[SheetPoint],
+        roots: &[Vec<SheetPoint>; 2],
+        ends: [SheetPoint; 2],
+    ) -> Result<(), ShapeError> {
+        let inside = |line: &[SheetPoint]| line[1..line.len() - 1].to_vec();
+        let mut tips = Vec::new();
+        for (side, root) in SIDES.into_iter().zip(roots) {
+            let section = self.section(side, outer, ends);
+            let border = [edges.to_vec(), inside(root), inside(&section)].concat();
+            self.fill(side, outer, border)?;
+            tips.push(section.iter().map(|point| point.1).collect::<Vec<u32>>());
+        }
+        let cap = cap_strip(&self.mesh.vertices, &tips[0], &tips[1]);
+        let outward = |[a, b, c]: [u32; 3]| if outer > 0 { [a, b, c] } else { [a, c, b] };
+        self.mesh.triangles.extend(cap.into_iter().map(outward));
+        Ok(())
     }
 
     /// Points and triangles of one side between the root and `outer`.
