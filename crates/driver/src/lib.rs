@@ -1,11 +1,25 @@
 //! The program `fladder`: case files, the store of aerodynamic results,
 //! progress, reports, and the command line.
+//!
+//! | module | idea |
+//! |---|---|
+//! | [`case`] | the case file, its overrides and its checks |
+//! | [`cache`] | content-addressed store, hashed before it is decoded |
+//! | [`gaf_json`], [`json`] | exchange files |
+//! | [`plot`] | root locus and V-g-f diagram as SVG |
+//! | [`failure`] | what every message says: what, where, why, what to do |
+//! | [`cli`] | commands and exit codes |
 
 pub mod atmosphere;
 pub mod cache;
 pub mod case;
+mod chain;
+pub mod cli;
+mod commands;
 pub mod failure;
 pub mod files;
 pub mod gaf_json;
 pub mod json;
 pub mod plot;
+mod report;
+mod terminal;

@@ -1,2 +1,5 @@
-//! Placeholder.
-fn main() {}
+//! The program `fladder`.
+
+fn main() -> std::process::ExitCode {
+    fladder::cli::main()
+}

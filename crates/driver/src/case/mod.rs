@@ -11,7 +11,7 @@ mod structure;
 mod suggest;
 
 pub use aerodynamics::{
-    AnalyticMode, Flow, Gaf, Mesh, Modes, Reference, Rotation, Symmetry, Term, TrailingEdges,
+    AnalyticMode, Axis, Flow, Gaf, Mesh, Modes, Reference, Rotation, Symmetry, Term, TrailingEdges,
     Wake, WakeDirection, WakeMode,
 };
 pub use flight::{Flight, Range, Speeds, Stability, Thrust, Trim};

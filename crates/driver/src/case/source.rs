@@ -46,6 +46,11 @@ impl Places {
         }
     }
 
+    /// Whether the key was given.
+    pub fn has(&self, key: &str) -> bool {
+        self.keys.contains_key(key)
+    }
+
     /// Positions past the end of the text stand for the overrides in order.
     fn of_position(&self, position: usize) -> String {
         if let Some(number) = position.checked_sub(self.override_position(0)) {

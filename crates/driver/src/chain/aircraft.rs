@@ -1,0 +1,122 @@
+//! Everything the aerodynamics need: the surface and all modes on it.
+
+use super::structure::StructureData;
+use super::surface::{Surface, Wanted};
+use crate::case::{self, CaseFile, Term};
+use crate::failure::Failure;
+use fladder_mesh::{SurfaceMode, Vec3};
+use fladder_modal::{self as modal, Component, Motion, PolynomialTerm, TransferReport};
+
+/// Surface, structure, and the modes in order: rigid, elastic, analytic.
+#[derive(Clone, Debug)]
+pub(crate) struct Aircraft {
+    pub(crate) surface: Surface,
+    pub(crate) structure: StructureData,
+    pub(crate) modes: Vec<SurfaceMode>,
+    /// How the elastic modes came to the surface.
+    pub(crate) transfer: Option<TransferReport>,
+}
+
+impl Aircraft {
+    /// Reads and assembles; a surface with errors is refused.
+    ///
+    /// # Errors
+    /// All that can be wrong with files, meshes, modes and names.
+    pub(crate) fn read(file: &CaseFile) -> Result<Self, Failure> {
+        let surface = Surface::read(&Wanted::by(file)?)?.without_errors()?;
+        Self::on(file, surface)
+    }
+
+    /// The modes on a surface that has been judged.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub(crate) fn on(file: &CaseFile, surface: Surface) -> Result<Self, Failure> {
+        let structure = StructureData::read(file)?;
+        let vertices = &surface.mesh.vertices;
+        let mut modes: Vec<SurfaceMode> = Vec::new();
+        if let Some(body) = &structure.body {
+            modes.extend(modal::rigid_modes(body, vertices));
+        }
+        let mut report = None;
+        if let Some(model) = &structure.model {
+            let given = file.case.structure.as_ref().and_then(|s| s.components.clone());
+            let (elastic, transferred) =
+                modal::transfer(model, &surface.mesh, &given.unwrap_or_default())
+                    .map_err(|error| not_transferred(file, &error))?;
+            modes.extend(elastic);
+            report = Some(transferred);
+        }
+        for (number, mode) in file.case.modes.analytic.iter().enumerate() {
+            let place = format!("modes.analytic.{number}");
+            let shape = analytic(mode).on(vertices).map_err(|error| {
+                Failure::input(
+                    error.to_string(),
+                    file.places.of(&place),
+                    "its row and column of Q would be undefined",
+                    "correct the shape of the mode",
+                )
+            })?;
+            modes.push(shape);
+        }
+        if modes.is_empty() {
+            return Err(Failure::input(
+                "the case has no modes",
+                file.places.of("modes"),
+                "generalised forces are those of modes",
+                "add [structure] with a result file or mass properties, or [[modes.analytic]]",
+            ));
+        }
+        Ok(Self { surface, structure, modes, transfer: report })
+    }
+
+    /// Names of the modes, in order.
+    pub(crate) fn mode_names(&self) -> Vec<String> {
+        self.modes.iter().map(|mode| mode.name.clone()).collect()
+    }
+
+    /// Number of modes that take part in sweeps: analytic modes do so only
+    /// where their mass and stiffness are given.
+    pub(crate) fn swept_modes(&self, file: &CaseFile) -> usize {
+        let has_matrices =
+            file.case.structure.as_ref().is_some_and(|given| given.matrices.is_some());
+        let analytic = if has_matrices { 0 } else { file.case.modes.analytic.len() };
+        self.modes.len() - analytic
+    }
+}
+
+fn not_transferred(file: &CaseFile, error: &modal::TransferError) -> Failure {
+    Failure::input(
+        error.to_string(),
+        file.places.of("structure"),
+        "the surface would not move as the structure does",
+        "check units, axes, origin and components of [structure], and mesh.scale",
+    )
+}
+
+fn analytic(mode: &case::AnalyticMode) -> modal::AnalyticMode {
+    let motion = match (&mode.translation, &mode.rotation) {
+        (Some(translation), _) => Motion::Translation(Vec3::from(*translation)),
+        (None, Some(rotation)) => Motion::Rotation {
+            axis: Vec3::from(rotation.axis),
+            point: Vec3::from(rotation.point),
+        },
+        (None, None) => {
+            Motion::Polynomial(mode.polynomial.iter().flatten().map(polynomial_term).collect())
+        }
+    };
+    modal::AnalyticMode { name: mode.name.clone(), motion }
+}
+
+fn polynomial_term(term: &Term) -> PolynomialTerm {
+    PolynomialTerm {
+        component: match term.component {
+            case::Axis::X => Component::X,
+            case::Axis::Y => Component::Y,
+            case::Axis::Z => Component::Z,
+        },
+        coefficient: term.coefficient,
+        powers: term.powers,
+        odd_y: term.odd_y,
+    }
+}

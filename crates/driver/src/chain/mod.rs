@@ -1,0 +1,9 @@
+//! From a case to roots: surface, modes, forces, sweep.
+
+pub(crate) mod aircraft;
+pub(crate) mod forces;
+pub(crate) mod memory;
+pub(crate) mod own_forces;
+pub(crate) mod structure;
+pub(crate) mod surface;
+pub(crate) mod sweep;

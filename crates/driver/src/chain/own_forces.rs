@@ -1,0 +1,259 @@
+//! Forces computed here: from the cache where they are there.
+//!
+//! What is stored is the transfer model of one surface, one set of modes and
+//! one incidence; grids of $(g, k)$ are views of it.
+
+use super::aircraft::Aircraft;
+use super::memory::{bytes_in_words, usable_bytes};
+use crate::cache::{Cache, Key, KeyBuilder, Stored};
+use crate::case::{CaseFile, WakeDirection};
+use crate::failure::Failure;
+use crate::gaf_json::{self, Document, Frame, Sample};
+use crate::terminal::{Bar, Console};
+use faer::c64;
+use fladder_bem::{BemError, Flow, LaplaceError, Plan, Problem, Solution};
+use fladder_mesh::Vec3;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::time::{Duration, Instant};
+
+/// Word of meaning of stored forces. It changes when the same inputs would
+/// give other numbers, or when the layout of what is stored changes.
+const MEANING: &str = "gaf/1";
+
+/// An entry of the cache.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct StoredForces {
+    pub(crate) mach: f64,
+    pub(crate) alpha_deg: f64,
+    pub(crate) beta_deg: f64,
+    pub(crate) solution: Solution,
+}
+
+impl Stored for StoredForces {
+    fn is_sound(&self) -> bool {
+        let transfer = &self.solution.transfer;
+        let steady = &self.solution.steady;
+        let angles = [self.mach, self.alpha_deg, self.beta_deg];
+        transfer.is_sound()
+            && steady.generalised_forces.len() == transfer.n_modes()
+            && steady.generalised_forces.iter().chain(&angles).all(|value| value.is_finite())
+    }
+}
+
+/// How the forces were come by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    Cache,
+    Computed(Duration),
+}
+
+/// Forces with their place in the cache.
+#[derive(Clone, Debug)]
+pub(crate) struct OwnForces {
+    pub(crate) key: Key,
+    pub(crate) origin: Origin,
+    pub(crate) stored: StoredForces,
+}
+
+/// The boundary-element problem of a case.
+pub(crate) fn problem<'a>(file: &CaseFile, aircraft: &'a Aircraft) -> Problem<'a> {
+    let case = &file.case;
+    Problem {
+        mesh: &aircraft.surface.mesh,
+        trailing_edges: &aircraft.surface.trailing_edges,
+        modes: &aircraft.modes,
+        flow: Flow {
+            alpha: case.flow.alpha_deg.to_radians(),
+            beta: case.flow.beta_deg.to_radians(),
+        },
+        wake_direction: match case.wake.direction {
+            WakeDirection::Freestream => fladder_bem::WakeDirection::Freestream,
+            WakeDirection::X => fladder_bem::WakeDirection::X,
+        },
+        body_lines: &aircraft.surface.body_lines,
+        semichord: case.reference.semichord,
+        moment_point: Vec3::from(case.reference.moment_point),
+    }
+}
+
+/// Hash of all that can change the numbers; names, paths and threads cannot.
+pub(crate) fn key(file: &CaseFile, problem: &Problem<'_>) -> Key {
+    let mesh = problem.mesh;
+    let coordinates: Vec<f64> = mesh.vertices.iter().flat_map(|v| [v.x, v.y, v.z]).collect();
+    let corners: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();
+    let lines: Vec<u32> = problem.body_lines.iter().flatten().copied().collect();
+    let direction: &[u8] = match problem.wake_direction {
+        fladder_bem::WakeDirection::Freestream => b"freestream",
+        fladder_bem::WakeDirection::X => b"x",
+    };
+    let mut builder = KeyBuilder::new(MEANING)
+        .numbers("vertices", coordinates.into_iter())
+        .indices("triangles", corners.into_iter())
+        .numbers("mach", [file.case.flow.mach].into_iter())
+        .numbers("incidence", [problem.flow.alpha, problem.flow.beta].into_iter())
+        .numbers("semichord", [problem.semichord].into_iter())
+        .numbers("moment point", problem.moment_point.iter().copied().collect::<Vec<_>>().into_iter())
+        .field("wake direction", direction)
+        .indices("body lines", lines.into_iter());
+    for chain in problem.trailing_edges {
+        builder = builder
+            .indices("trailing edge", chain.vertices.iter().copied())
+            .indices("upper", chain.upper.iter().copied())
+            .indices("lower", chain.lower.iter().copied())
+            .field("closed", &[u8::from(chain.closed)]);
+    }
+    for mode in problem.modes {
+        let frame: &[u8] = match mode.frame {
+            fladder_mesh::Frame::Inertial => b"inertial",
+            fladder_mesh::Frame::Body => b"body",
+        };
+        let shape: Vec<f64> = mode.displacement.iter().flat_map(|u| [u.x, u.y, u.z]).collect();
+        builder = builder.field("frame", frame).numbers("mode", shape.into_iter());
+    }
+    builder.finish()
+}
+
+/// Forces from the cache, if they are there.
+pub(crate) fn cached(cache: &Cache, console: &Console, key: Key) -> Option<OwnForces> {
+    let loaded = cache.load::<StoredForces>(&key);
+    if let Some(warning) = loaded.warning {
+        console.warn(warning);
+    }
+    loaded.value.map(|stored| OwnForces { key, origin: Origin::Cache, stored })
+}
+
+/// Forces from the cache or computed and stored.
+///
+/// # Errors
+/// Too little memory, a problem that cannot be solved, an interruption.
+pub(crate) fn obtain(
+    file: &CaseFile,
+    aircraft: &Aircraft,
+    cache: &Cache,
+    console: &Console,
+) -> Result<OwnForces, Failure> {
+    let problem = problem(file, aircraft);
+    let key = key(file, &problem);
+    if let Some(forces) = cached(cache, console, key) {
+        return Ok(forces);
+    }
+    let plan = fladder_bem::plan(&problem).map_err(|error| unsolved(file, &error))?;
+    refuse_too_large(file, &plan)?;
+    let seconds = plan.core_seconds / rayon::current_num_threads() as f64;
+    console.say(format!(
+        "computing forces: {} unknowns, {} wake elements, about {} and {:.0} s",
+        plan.sizes.unknowns,
+        plan.sizes.wake_elements,
+        bytes_in_words(plan.memory_bytes),
+        seconds.max(1.0)
+    ));
+    let start = Instant::now();
+    let bar = Bar::new(console.is_quiet());
+    let solution =
+        fladder_bem::solve(&problem, &bar).map_err(|error| unsolved(file, &error))?;
+    bar.clear();
+    let stored = StoredForces {
+        mach: file.case.flow.mach,
+        alpha_deg: file.case.flow.alpha_deg,
+        beta_deg: file.case.flow.beta_deg,
+        solution,
+    };
+    if let Some(warning) = cache.publish(&key, &stored) {
+        console.warn(warning);
+    }
+    Ok(OwnForces { key, origin: Origin::Computed(start.elapsed()), stored })
+}
+
+fn refuse_too_large(file: &CaseFile, plan: &Plan) -> Result<(), Failure> {
+    match usable_bytes() {
+        Some(usable) if plan.memory_bytes > usable => Err(Failure::input(
+            format!(
+                "the computation needs {}, {} can be used",
+                bytes_in_words(plan.memory_bytes),
+                bytes_in_words(usable)
+            ),
+            format!("{}: {} triangles", file.places.of("mesh.file"), plan.sizes.triangles),
+            "the system would kill the program half-way",
+            "take a coarser mesh, or a machine with more memory",
+        )),
+        _ => Ok(()),
+    }
+}
+
+pub(crate) fn unsolved(file: &CaseFile, error: &BemError) -> Failure {
+    let place = file.places.of("mesh.file");
+    match error {
+        BemError::Interrupted { stage } => Failure::interrupted(stage),
+        BemError::Singular { .. } | BemError::NotFinite { .. } => Failure::numerical(
+            error.to_string(),
+            place,
+            "no forces can be had from this surface",
+            "look at the mesh with `fladder check`; thin or touching parts are the usual cause",
+        ),
+        _ => Failure::input(
+            error.to_string(),
+            place,
+            "the wake could not be laid out, so there are no forces",
+            "look at the trailing edges with `fladder check`",
+        ),
+    }
+}
+
+/// Samples of $Q$ in parallel, in the order of the points.
+///
+/// # Errors
+/// A point on the branch cut or at a pole.
+pub(crate) fn samples(
+    forces: &StoredForces,
+    points: &[[f64; 2]],
+) -> Result<Vec<Sample>, Failure> {
+    let transfer = &forces.solution.transfer;
+    points
+        .par_iter()
+        .map(|[g, k]| {
+            let q = transfer.q(c64::new(*g, *k)).map_err(|error| not_evaluated(&error))?;
+            Ok(Sample::new(*g, *k, &q))
+        })
+        .collect()
+}
+
+fn not_evaluated(error: &LaplaceError) -> Failure {
+    let place = "the point asked for with --at or [gaf]";
+    match error {
+        LaplaceError::Singular { .. } => Failure::numerical(
+            error.to_string(),
+            place,
+            "Q has no value there",
+            "take a point beside it",
+        ),
+        _ => Failure::input(error.to_string(), place, "Q has no value there", "take another point"),
+    }
+}
+
+/// Points of the grid that are computed: those on the branch cut are not.
+pub(crate) fn grid(file: &CaseFile) -> Vec<[f64; 2]> {
+    let gaf = &file.case.gaf;
+    let all = gaf.g.iter().flat_map(|g| gaf.k.iter().map(move |k| [*g, *k]));
+    all.filter(|[g, k]| *k > 0.0 || *g >= 0.0).collect()
+}
+
+/// The forces of all modes as a document of the exchange format.
+pub(crate) fn document(
+    aircraft: &Aircraft,
+    forces: &StoredForces,
+    points: Vec<Sample>,
+) -> Document {
+    let steady = &forces.solution.steady.generalised_forces;
+    Document {
+        schema: gaf_json::SCHEMA.to_owned(),
+        mach: forces.mach,
+        semichord: forces.solution.transfer.semichord(),
+        alpha_deg: forces.alpha_deg,
+        beta_deg: forces.beta_deg,
+        modes: aircraft.mode_names(),
+        frames: aircraft.modes.iter().map(|mode| Frame::from(mode.frame)).collect(),
+        steady: steady.iter().copied().map(Some).collect(),
+        points,
+    }
+}

@@ -1,0 +1,200 @@
+//! The wetted surface: read, judged, with the edges its wake leaves from.
+
+use crate::case::{CaseFile, TrailingEdges, Wake, WakeMode};
+use crate::failure::Failure;
+use fladder_mesh::judge::{self, Code, Fault, Severity};
+use fladder_mesh::read::{self, ReadError};
+use fladder_mesh::{Topology, TrailingEdge, TriMesh, trailing_edge};
+use std::path::{Path, PathBuf};
+
+/// What is asked of a surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Wanted {
+    pub(crate) file: PathBuf,
+    pub(crate) scale: f64,
+    pub(crate) trailing_edges: TrailingEdges,
+    pub(crate) wake: Wake,
+    /// Where groups are named, for messages.
+    pub(crate) groups_place: String,
+    /// Where body lines are named, for messages.
+    pub(crate) lines_place: String,
+}
+
+impl Wanted {
+    /// As the case says.
+    ///
+    /// # Errors
+    /// No mesh, or no such file.
+    pub(crate) fn by(file: &CaseFile) -> Result<Self, Failure> {
+        let Some(mesh) = &file.case.mesh else {
+            return Err(Failure::input(
+                "the case has no [mesh]",
+                file.places.of("mesh"),
+                "aerodynamic forces are computed on a wetted surface",
+                "add [mesh] with file = \"…\"; with gaf.file only `sweep` and `run` make sense",
+            ));
+        };
+        Ok(Self {
+            file: file.existing("mesh.file", &mesh.file)?,
+            scale: mesh.scale,
+            trailing_edges: mesh.trailing_edge.clone(),
+            wake: file.case.wake.clone(),
+            groups_place: file.places.of("mesh.trailing_edge.groups"),
+            lines_place: file.places.of("wake.body_lines"),
+        })
+    }
+
+    /// A mesh file by itself, with the defaults of a case.
+    pub(crate) fn bare(file: &Path) -> Self {
+        let place = file.display().to_string();
+        Self {
+            file: file.to_owned(),
+            scale: 1.0,
+            trailing_edges: TrailingEdges::default(),
+            wake: Wake::default(),
+            groups_place: place.clone(),
+            lines_place: place,
+        }
+    }
+}
+
+/// A judged surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Surface {
+    pub(crate) file: PathBuf,
+    pub(crate) mesh: TriMesh,
+    pub(crate) faults: Vec<Fault>,
+    pub(crate) bodies: usize,
+    pub(crate) area: f64,
+    pub(crate) volume: f64,
+    /// Where the wake leaves; empty without one.
+    pub(crate) trailing_edges: Vec<TrailingEdge>,
+    pub(crate) body_lines: Vec<[u32; 2]>,
+    pub(crate) notes: Vec<String>,
+}
+
+impl Surface {
+    /// Reads and judges; faults are collected, not raised.
+    ///
+    /// # Errors
+    /// A file that cannot be read, groups that are not there.
+    pub(crate) fn read(wanted: &Wanted) -> Result<Self, Failure> {
+        let loaded = read::load(&wanted.file, wanted.scale)
+            .map_err(|error| unreadable(&wanted.file, &error))?;
+        let judgement = judge::judge(loaded.mesh, judge::Settings::default());
+        let mut faults = judgement.faults;
+        let mesh = judgement.mesh;
+        let has_errors = faults.iter().any(|fault| fault.severity == Severity::Error);
+        let (mut trailing_edges, mut body_lines) = (Vec::new(), Vec::new());
+        if !has_errors && wanted.wake.mode != WakeMode::None {
+            trailing_edges = find_trailing_edges(&mesh, wanted, &mut faults)?;
+            body_lines = named_lines(&mesh, wanted)?;
+        }
+        Ok(Self {
+            file: wanted.file.clone(),
+            mesh,
+            faults,
+            bodies: judgement.bodies.len(),
+            area: judgement.area,
+            volume: judgement.volume,
+            trailing_edges,
+            body_lines,
+            notes: loaded.notes,
+        })
+    }
+
+    /// Refuses a surface with a fault that makes a computation meaningless.
+    ///
+    /// # Errors
+    /// All such faults in one message.
+    pub(crate) fn without_errors(self) -> Result<Self, Failure> {
+        let errors: Vec<&Fault> =
+            self.faults.iter().filter(|fault| fault.severity == Severity::Error).collect();
+        if errors.is_empty() {
+            return Ok(self);
+        }
+        Err(refusal(&self.file, &errors))
+    }
+}
+
+/// The faults as one message.
+pub(crate) fn refusal(file: &Path, errors: &[&Fault]) -> Failure {
+    let join = |part: &dyn Fn(&Fault) -> String| {
+        let mut lines: Vec<String> = errors.iter().map(|fault| part(fault)).collect();
+        lines.dedup();
+        lines.join("\n")
+    };
+    let places = |fault: &Fault| {
+        let more = fault.elements.len().saturating_sub(fault.places.len());
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        format!("{}{more}", fault.places.join(", "))
+    };
+    let place = join(&|fault| format!("{}: {}", file.display(), places(fault)));
+    Failure::input(
+        join(&|fault| fault.what.clone()),
+        place.replace(": \n", "\n").trim_end_matches(": "),
+        join(&|fault| fault.why.to_owned()),
+        join(&|fault| fault.remedy.to_owned()),
+    )
+}
+
+fn unreadable(file: &Path, error: &ReadError) -> Failure {
+    let (place, what, remedy) = match error {
+        ReadError::Malformed { path, place, what, remedy } => {
+            (format!("{}, {place}", path.display()), what.clone(), remedy.clone())
+        }
+        other => (
+            file.display().to_string(),
+            other.to_string(),
+            "check the file and your right to read it".to_owned(),
+        ),
+    };
+    Failure::input(what, place, "without a whole surface nothing can be computed", remedy)
+}
+
+fn find_trailing_edges(
+    mesh: &TriMesh,
+    wanted: &Wanted,
+    faults: &mut Vec<Fault>,
+) -> Result<Vec<TrailingEdge>, Failure> {
+    let topology = Topology::new(mesh);
+    let settings = trailing_edge::Settings {
+        max_wedge_deg: wanted.trailing_edges.max_wedge_deg,
+        min_downstream: wanted.trailing_edges.min_downstream,
+    };
+    let found = match &wanted.trailing_edges.groups {
+        Some(groups) => trailing_edge::find_from_groups(mesh, &topology, groups)
+            .map_err(|error| unknown_groups(&error.to_string(), &wanted.groups_place))?,
+        None => trailing_edge::find_by_shape(mesh, &topology, settings),
+    };
+    if found.is_empty() {
+        let severity = match wanted.wake.mode {
+            WakeMode::Required => Severity::Error,
+            _ => Code::NoTrailingEdge.severity(),
+        };
+        faults.push(judge::no_trailing_edge(mesh, &topology, settings, severity));
+    }
+    Ok(found)
+}
+
+fn unknown_groups(what: &str, place: &str) -> Failure {
+    Failure::input(
+        what,
+        place,
+        "the wake would leave from another place, or from none",
+        "correct the name, or leave the key out to have the edges found from the shape",
+    )
+}
+
+fn named_lines(mesh: &TriMesh, wanted: &Wanted) -> Result<Vec<[u32; 2]>, Failure> {
+    let mut edges = Vec::new();
+    for name in &wanted.wake.body_lines {
+        let Some(group) = mesh.curve(name) else {
+            let there: Vec<&str> = mesh.curves.iter().map(|group| group.name.as_str()).collect();
+            let what = format!("the mesh has no curve group `{name}`; it has {there:?}");
+            return Err(unknown_groups(&what, &wanted.lines_place));
+        };
+        edges.extend_from_slice(&group.edges);
+    }
+    Ok(edges)
+}

@@ -1,0 +1,168 @@
+//! Roots over the speeds of the case.
+
+use super::forces::{ExactForces, Forces};
+use super::structure::{StructureData, system};
+use crate::atmosphere;
+use crate::case::{self, CaseFile};
+use crate::cli::Method;
+use crate::failure::Failure;
+use crate::terminal::{Bar, Console};
+use fladder_stability::{
+    self as stability, Aerodynamics, DEFAULT_DAMPING_LIMIT, OperatingPoint, PiecewiseQuadratic,
+    PkForm, Sweep, SweepError, SweepResult, System,
+};
+
+/// Air density of the case, kg/m³.
+///
+/// # Errors
+/// The case gives none.
+pub(crate) fn density(file: &CaseFile) -> Result<f64, Failure> {
+    let flow = &file.case.flow;
+    flow.density.or_else(|| flow.altitude.map(atmosphere::density)).ok_or_else(|| {
+        Failure::input(
+            "neither `flow.density` nor `flow.altitude` is given",
+            file.places.of("flow.density"),
+            "the dynamic pressure of a speed needs the density",
+            "add density = 1.225 (kg/m³) or altitude = 0.0 (m) to [flow]",
+        )
+    })
+}
+
+/// Speeds of the case, m/s.
+///
+/// # Errors
+/// The case has no [stability].
+pub(crate) fn speeds(file: &CaseFile) -> Result<Vec<f64>, Failure> {
+    let swept = file.case.stability.as_ref().and_then(|swept| swept.speed.as_ref());
+    swept.map(case::Speeds::values).ok_or_else(|| {
+        Failure::input(
+            "the case has no [stability] with speeds",
+            file.places.of("stability"),
+            "there is nothing to sweep",
+            "add [stability] with speed = { from = 20.0, to = 75.0, count = 56 }",
+        )
+    })
+}
+
+/// Sweeps the case.
+///
+/// # Errors
+/// A structure that does not fit the forces, an eigenvalue problem that does
+/// not converge, an interruption.
+pub(crate) fn run(
+    file: &CaseFile,
+    structure: &StructureData,
+    forces: &Forces,
+    method: Method,
+    console: &Console,
+) -> Result<SweepResult, Failure> {
+    let (density, speeds) = (density(file)?, speeds(file)?);
+    let fit = PiecewiseQuadratic::centred(&forces.table, DEFAULT_DAMPING_LIMIT)
+        .map_err(|error| unfit(file, &error.to_string()))?;
+    console.notes(fit.notes());
+    let system = complete_system(file, structure, forces, &fit, console)?;
+    let points: Vec<OperatingPoint> = speeds
+        .iter()
+        .map(|speed| OperatingPoint {
+            alpha: forces.alpha,
+            beta: forces.beta,
+            ..OperatingPoint::new(*speed, density)
+        })
+        .collect();
+    let exact = forces.transfer.as_ref().map(|transfer| ExactForces { transfer, fit: &fit });
+    let smooth: &dyn Aerodynamics = exact.as_ref().map_or(&fit, |exact| exact);
+    let sweep = Sweep {
+        structure: &system,
+        schedule: &points,
+        table: &forces.table,
+        fit: &fit,
+        smooth: Some(smooth),
+        method: method.into(),
+        pk_form: PkForm::default(),
+    };
+    let bar = Bar::new(console.is_quiet());
+    bar.begin("sweeping speeds", sweep.steps() as u64);
+    let result = sweep.run(&bar).map_err(|error| not_swept(file, &error))?;
+    bar.clear();
+    Ok(result)
+}
+
+fn complete_system(
+    file: &CaseFile,
+    structure: &StructureData,
+    forces: &Forces,
+    fit: &PiecewiseQuadratic,
+    console: &Console,
+) -> Result<System, Failure> {
+    let names = forces.table.modes();
+    let system = system(file, structure, names)?;
+    let Some(flight) = &file.case.flight else { return Ok(system) };
+    let heave = names.iter().position(|name| name == stability::RIGID_NAMES[2]);
+    let heave_slope = heave.map_or(0.0, |z| fit.slope_at_origin(z, z));
+    let steady = forces.table.steady();
+    let is_elastic = |name: &String| !stability::RIGID_NAMES.contains(&name.as_str());
+    let unknown = names.iter().zip(steady).filter(|(name, force)| is_elastic(name) && force.is_none());
+    let unknown = unknown.count();
+    if flight.speed_derivative && unknown > 0 {
+        console.say(format!(
+            "  note: the steady force of {unknown} elastic modes is unknown; their rows of the \
+             speed derivative are left out"
+        ));
+    }
+    system
+        .with_flight(stability_flight(flight), forces.table.semichord(), heave_slope, steady)
+        .map_err(|error| unfit(file, &error.to_string()))
+}
+
+fn stability_flight(flight: &case::Flight) -> stability::Flight {
+    stability::Flight {
+        gravity: flight.gravity,
+        climb: flight.climb_deg.to_radians(),
+        parasite_drag_area: flight.parasite_drag_area,
+        induced_drag_factor: flight.induced_drag_factor,
+        thrust: match flight.thrust {
+            case::Thrust::ConstantPower => stability::Thrust::ConstantPower,
+            case::Thrust::ConstantThrust => stability::Thrust::ConstantThrust,
+            case::Thrust::None => stability::Thrust::None,
+        },
+        speed_derivative: flight.speed_derivative,
+    }
+}
+
+fn unfit(file: &CaseFile, what: &str) -> Failure {
+    Failure::input(
+        what,
+        file.places.of("gaf"),
+        "roots are found from forces on a grid that contains the imaginary axis",
+        "give more reduced frequencies, evenly spread over those of interest",
+    )
+}
+
+fn not_swept(file: &CaseFile, error: &SweepError) -> Failure {
+    let place = file.places.of("stability");
+    match error {
+        SweepError::Cancelled => Failure::interrupted("sweeping speeds"),
+        SweepError::Numerical { .. } | SweepError::Spline(_) => Failure::numerical(
+            error.to_string(),
+            place,
+            "the roots at this speed are unknown",
+            "look at mass and stiffness for entries of very different size",
+        ),
+        _ => Failure::input(
+            error.to_string(),
+            place,
+            "there is no eigenvalue problem to solve",
+            "correct [stability], [structure] or the forces",
+        ),
+    }
+}
+
+impl From<Method> for stability::Method {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::P2 => Self::P2,
+            Method::Pk => Self::Pk,
+            Method::Both => Self::Both,
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! `fladder gaf`: forces into the cache, and on request into a file.
+
+use super::Session;
+use crate::chain::aircraft::Aircraft;
+use crate::chain::{forces, own_forces};
+use crate::failure::Failure;
+use crate::report;
+use std::path::Path;
+
+pub(crate) fn gaf(
+    session: &Session,
+    path: &Path,
+    json: Option<&Path>,
+    at: &[[f64; 2]],
+) -> Result<(), Failure> {
+    let file = session.case(path)?;
+    let console = &session.console;
+    if forces::are_given(&file) {
+        return Err(Failure::input(
+            "the forces of this case come from `gaf.file`, there is nothing to compute",
+            file.places.of("gaf.file"),
+            "`gaf` computes forces on the mesh of the case",
+            "use `fladder sweep`, or remove gaf.file and give [mesh]",
+        ));
+    }
+    let aircraft = Aircraft::read(&file)?;
+    report::surface(console, &aircraft.surface);
+    report::structure(console, &aircraft.structure);
+    report::transfer(console, aircraft.transfer.as_ref());
+    let own = own_forces::obtain(&file, &aircraft, &session.open_cache(&file), console)?;
+    report::own_forces(console, &file, &aircraft, &own);
+    report::wake_jumps(console, &own.stored.solution.steady);
+    if json.is_none() && at.is_empty() {
+        return Ok(());
+    }
+    let points = if at.is_empty() { own_forces::grid(&file) } else { at.to_vec() };
+    let samples = own_forces::samples(&own.stored, &points)?;
+    if !at.is_empty() {
+        samples.iter().for_each(|sample| report::sample(console, &aircraft.mode_names(), sample));
+    }
+    match json {
+        Some(json) => {
+            let document = own_forces::document(&aircraft, &own.stored, samples);
+            session.write_json(json, &document)
+        }
+        None => Ok(()),
+    }
+}

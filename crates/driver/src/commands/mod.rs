@@ -1,0 +1,72 @@
+//! One file a command.
+
+mod cache;
+mod check;
+mod gaf;
+mod modes;
+mod run;
+mod sweep;
+
+pub(crate) use cache::cache;
+pub(crate) use check::check;
+pub(crate) use gaf::gaf;
+pub(crate) use modes::modes;
+pub(crate) use run::run;
+pub(crate) use sweep::sweep;
+
+use crate::cache::Cache;
+use crate::case::CaseFile;
+use crate::cli::Common;
+use crate::failure::Failure;
+use crate::files;
+use crate::json;
+use crate::terminal::Console;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Options and output of one call of the program.
+pub(crate) struct Session {
+    pub(crate) common: Common,
+    pub(crate) console: Console,
+}
+
+impl Session {
+    fn case(&self, path: &Path) -> Result<CaseFile, Failure> {
+        let file = CaseFile::read(path, &self.common.set)?;
+        let title = &file.case.title;
+        if !title.is_empty() {
+            self.console.say(title);
+        }
+        Ok(file)
+    }
+
+    fn cache_folder(&self, file: &CaseFile) -> PathBuf {
+        self.common.cache.clone().unwrap_or_else(|| file.default_cache())
+    }
+
+    fn open_cache(&self, file: &CaseFile) -> Cache {
+        let (cache, warning) = Cache::open(&self.cache_folder(file));
+        if let Some(warning) = warning {
+            self.console.warn(warning);
+        }
+        cache
+    }
+
+    fn results_folder(&self, file: &CaseFile) -> PathBuf {
+        self.common.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name))
+    }
+
+    fn write_json<T: Serialize>(&self, path: &Path, value: &T) -> Result<(), Failure> {
+        let text = json::text(value).map_err(|error| {
+            Failure::numerical(
+                format!("the result cannot be written as JSON: {error}"),
+                path.display().to_string(),
+                "the file would be incomplete",
+                "please report this with the case file and the command",
+            )
+        })?;
+        files::write(path, &text)?;
+        self.console.say(format!("wrote {}", path.display()));
+        Ok(())
+    }
+}

@@ -1,0 +1,139 @@
+//! Steady loads, wake jump and samples of $Q$ in words.
+
+use crate::case::CaseFile;
+use crate::chain::aircraft::Aircraft;
+use crate::chain::memory::bytes_in_words;
+use crate::chain::own_forces::{Origin, OwnForces};
+use crate::chain::sweep::density;
+use crate::gaf_json::Sample;
+use crate::terminal::{Align, Console, Table};
+use fladder_bem::SteadyState;
+
+/// Larger matrices are for files.
+const LARGEST_PRINTED: usize = 8;
+/// Stations of a trailing edge that are printed.
+const PRINTED_STATIONS: usize = 13;
+
+/// Key, cost, and the loads of the steady flow.
+pub(crate) fn own_forces(
+    console: &Console,
+    file: &CaseFile,
+    aircraft: &Aircraft,
+    forces: &OwnForces,
+) {
+    let solution = &forces.stored.solution;
+    let how = match forces.origin {
+        Origin::Cache => "from the cache".to_owned(),
+        Origin::Computed(time) => format!(
+            "computed in {:.1} s ({} unknowns, matrix of {})",
+            time.as_secs_f64(),
+            solution.sizes.unknowns,
+            bytes_in_words(8 * (solution.sizes.unknowns as u64).pow(2))
+        ),
+    };
+    console.say(format!(
+        "forces of {} modes {how}, key {}",
+        aircraft.modes.len(),
+        forces.key.to_hex()
+    ));
+    console.notes(&solution.notes);
+    steady_loads(console, file, aircraft, &solution.steady);
+}
+
+fn steady_loads(console: &Console, file: &CaseFile, aircraft: &Aircraft, steady: &SteadyState) {
+    let flow = &file.case.flow;
+    let [_, side, _] = steady.loads.force;
+    let [roll, pitch, yaw] = steady.loads.moment;
+    console.say(format!(
+        "steady flow at alpha {}°, beta {}°: lift {:.5} m² by pressure, {:.5} m² by wake jump \
+         (times dynamic pressure)",
+        flow.alpha_deg, flow.beta_deg, steady.lift_by_pressure, steady.lift_by_wake_jump
+    ));
+    if let Some(area) = file.case.reference.area {
+        console.say(format!("  lift coefficient {:.4}", steady.lift_by_pressure / area));
+    }
+    console.say(format!(
+        "  flight-mechanics signs: side force to starboard {side:.5} m²; moments about the moment \
+         point: roll (starboard wing down) {:.5}, pitch (nose up) {pitch:.5}, yaw (nose to \
+         starboard) {:.5} m³",
+        0.0 - roll,
+        0.0 - yaw
+    ));
+    let (pressure, triangle) = steady.lowest_pressure;
+    console.say(format!("  lowest pressure coefficient {pressure:.3} on triangle {triangle}"));
+    level_flight(console, file, aircraft, steady.lift_by_pressure);
+}
+
+/// Speed at which the lift carries the weight.
+fn level_flight(console: &Console, file: &CaseFile, aircraft: &Aircraft, lift: f64) {
+    let (Some(body), Ok(density)) = (&aircraft.structure.body, density(file)) else { return };
+    let gravity = file.case.flight.as_ref().map_or(STANDARD_GRAVITY, |flight| flight.gravity);
+    let climb = file.case.flight.as_ref().map_or(0.0, |flight| flight.climb_deg);
+    let weight = body.mass * gravity * climb.to_radians().cos();
+    if lift > 0.0 {
+        let speed = (2.0 * weight / (density * lift)).sqrt();
+        console.say(format!(
+            "  the lift carries the weight of {weight:.1} N at {speed:.2} m/s and {density} kg/m³"
+        ));
+    }
+}
+
+/// m/s², where the case gives none.
+const STANDARD_GRAVITY: f64 = 9.806_65;
+
+/// Spanwise wake jump of the steady flow along every trailing edge.
+pub(crate) fn wake_jumps(console: &Console, steady: &SteadyState) {
+    for (number, edge) in steady.wake_jumps.iter().enumerate() {
+        console.say(format!(
+            "wake jump of the steady flow along trailing edge {}, per unit speed{}",
+            number + 1,
+            ends_in_words(edge.on_body)
+        ));
+        let mut table = Table::new(&[
+            ("x [m]", Align::Right),
+            ("y [m]", Align::Right),
+            ("z [m]", Align::Right),
+            ("jump [m]", Align::Right),
+        ]);
+        let count = edge.positions.len();
+        let rows = count.min(PRINTED_STATIONS);
+        for row in 0..rows {
+            let station = if rows < 2 { 0 } else { row * (count - 1) / (rows - 1) };
+            let [x, y, z] = edge.positions[station];
+            let mut cells: Vec<String> = [x, y, z].iter().map(|c| format!("{c:.4}")).collect();
+            cells.push(format!("{:.6}", edge.jumps[station]));
+            table.row(cells);
+        }
+        console.say(table.text());
+        if rows < count {
+            console.say(format!("  {rows} of {count} stations"));
+        }
+    }
+}
+
+fn ends_in_words(on_body: [bool; 2]) -> &'static str {
+    match on_body {
+        [true, true] => " (both ends on a body)",
+        [true, false] => " (begins on a body)",
+        [false, true] => " (ends on a body)",
+        [false, false] => "",
+    }
+}
+
+/// One sample of $Q$, where it is small enough to read.
+pub(crate) fn sample(console: &Console, modes: &[String], sample: &Sample) {
+    console.say(format!("Q at g = {}, k = {} [m² for unit-metre modes]", sample.g, sample.k));
+    if modes.len() > LARGEST_PRINTED {
+        console.say(format!("  {} × {} entries; --json writes them", modes.len(), modes.len()));
+        return;
+    }
+    let mut columns = vec![("force on", Align::Left)];
+    columns.extend(modes.iter().map(|mode| (mode.as_str(), Align::Right)));
+    let mut table = Table::new(&columns);
+    for (mode, row) in modes.iter().zip(&sample.q) {
+        let mut cells = vec![mode.clone()];
+        cells.extend(row.iter().map(|[re, im]| format!("{re:.5} {im:+.5}i")));
+        table.row(cells);
+    }
+    console.say(table.text());
+}

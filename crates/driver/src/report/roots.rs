@@ -1,0 +1,234 @@
+//! Roots, crossings and the verdict in words.
+
+use crate::case::CaseFile;
+use crate::terminal::{Align, Console, Table};
+use fladder_stability::{Branch, Crossing, Kind, MethodResult, Methods};
+use std::f64::consts::{LN_2, TAU};
+
+/// Two crossings further apart than this in speed or frequency, relative, are
+/// not the same crossing.
+const SAME_CROSSING: f64 = 0.05;
+
+/// What a sweep was made at, on one line.
+pub(crate) fn conditions(file: &CaseFile, speeds: &[f64], density: f64) -> String {
+    let flow = &file.case.flow;
+    let (first, last) = (speeds.first().unwrap_or(&0.0), speeds.last().unwrap_or(&0.0));
+    format!(
+        "density {density:.4} kg/m³, {first}–{last} m/s, semichord {} m, alpha {}°, M {}",
+        file.case.reference.semichord, flow.alpha_deg, flow.mach
+    )
+}
+
+/// Crossings, agreement of the methods, rigid roots, and the verdict.
+pub(crate) fn roots(console: &Console, methods: &Methods, speeds: &[f64]) {
+    let best = methods.polished.as_ref().or(methods.p2.as_ref()).or(methods.pk.as_ref());
+    let (Some(best), [first, .., last] | [first @ last]) = (best, speeds) else { return };
+    crossings(console, methods, best);
+    rigid_roots(console, best);
+    completeness(console, best);
+    console.say("");
+    verdict(best, *first, *last).iter().for_each(|line| console.say(line));
+}
+
+fn crossings(console: &Console, methods: &Methods, best: &MethodResult) {
+    let mut table = Table::new(&[
+        ("crossing", Align::Left),
+        ("branch", Align::Left),
+        ("kind", Align::Left),
+        ("V [m/s]", Align::Right),
+        ("q [Pa]", Align::Right),
+        ("f [Hz]", Align::Right),
+        ("k", Align::Right),
+        ("p2 V [m/s]", Align::Right),
+        ("p-k V [m/s]", Align::Right),
+        ("p-k to p2", Align::Right),
+    ]);
+    let beside = |result: &Option<MethodResult>, crossing: &Crossing, back: bool| {
+        let result = result.as_ref()?;
+        let list = if back { &result.restabilised } else { &result.flutter };
+        counterpart(list, crossing)
+    };
+    let mut add = |word: &str, crossing: &Crossing, back: bool| {
+        let p2 = beside(&methods.p2, crossing, back);
+        let pk = beside(&methods.pk, crossing, back);
+        let speed = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.3}"));
+        let difference = p2.zip(pk).map_or_else(
+            || "–".to_owned(),
+            |(p2, pk)| format!("{:+.3} %", 100.0 * (pk - p2) / p2),
+        );
+        table.row([
+            word.to_owned(),
+            crossing.branch.clone(),
+            kind(crossing.kind).to_owned(),
+            format!("{:.3}", crossing.speed),
+            format!("{:.1}", crossing.dynamic_pressure),
+            format!("{:.3}", crossing.frequency_hz),
+            format!("{:.4}", crossing.k),
+            speed(p2),
+            speed(pk),
+            difference,
+        ]);
+    };
+    best.flutter.iter().for_each(|crossing| add("flutter", crossing, false));
+    best.restabilised.iter().for_each(|crossing| add("stable again", crossing, true));
+    for divergence in &best.divergence {
+        table.row([
+            "divergence".to_owned(),
+            divergence.branch.clone(),
+            kind(divergence.kind).to_owned(),
+            format!("{:.3}", divergence.speed),
+            format!("{:.1}", divergence.dynamic_pressure),
+        ]);
+    }
+    if !table.is_empty() {
+        console.say(table.text());
+    }
+}
+
+/// Speed of the crossing of another method that is the same one.
+fn counterpart(list: &[Crossing], wanted: &Crossing) -> Option<f64> {
+    let distance = |other: &Crossing| {
+        let speed = (other.speed - wanted.speed).abs() / wanted.speed;
+        let scale = wanted.frequency_hz.max(f64::MIN_POSITIVE);
+        speed.max((other.frequency_hz - wanted.frequency_hz).abs() / scale)
+    };
+    let nearest = list.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    (distance(nearest) <= SAME_CROSSING).then_some(nearest.speed)
+}
+
+fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Rigid => "rigid",
+        Kind::Elastic => "elastic",
+    }
+}
+
+/// Motions of the whole aircraft at the ends of their branches.
+fn rigid_roots(console: &Console, best: &MethodResult) {
+    let mut table = Table::new(&[
+        ("rigid motion", Align::Left),
+        ("V [m/s]", Align::Right),
+        ("period [s]", Align::Right),
+        ("damping ratio", Align::Right),
+        ("amplitude", Align::Left),
+    ]);
+    for branch in best.branches.iter().filter(|branch| branch.kind == Kind::Rigid) {
+        let last = branch.speed.len().saturating_sub(1);
+        let mut ends = vec![0, last];
+        ends.dedup();
+        for end in ends.into_iter().filter(|end| *end < branch.speed.len()) {
+            table.row(rigid_row(branch, end));
+        }
+    }
+    if !table.is_empty() {
+        console.say(table.text());
+    }
+}
+
+fn rigid_row(branch: &Branch, at: usize) -> [String; 5] {
+    let (sigma, omega) = (branch.sigma[at], branch.omega[at]);
+    let period = if omega > 0.0 { format!("{:.3}", TAU / omega) } else { "–".to_owned() };
+    let ratio = branch.damping_ratio[at].map_or_else(|| "–".to_owned(), |r| format!("{r:.4}"));
+    [branch.name.clone(), format!("{:.1}", branch.speed[at]), period, ratio, amplitude(sigma)]
+}
+
+fn amplitude(sigma: f64) -> String {
+    if sigma == 0.0 {
+        return "neither grows nor decays".to_owned();
+    }
+    let word = if sigma > 0.0 { "doubles" } else { "halves" };
+    format!("{word} in {} s", significant(LN_2 / sigma.abs()))
+}
+
+/// Three significant digits, without an exponent for everyday sizes.
+fn significant(value: f64) -> String {
+    if !(1e-4..1e6).contains(&value) {
+        return format!("{value:.2e}");
+    }
+    let decimals = (2.0 - value.log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{value:.decimals$}")
+}
+
+fn completeness(console: &Console, best: &MethodResult) {
+    let Some(complete) = &best.complete else { return };
+    let counted = complete.iter().filter(|met| **met).count();
+    if counted < complete.len() {
+        console.say(format!(
+            "  note: the number of roots was verified at {counted} of {} speeds",
+            complete.len()
+        ));
+    }
+}
+
+/// Sentences that say what the sweep means.
+fn verdict(best: &MethodResult, first: f64, last: f64) -> Vec<String> {
+    let mut lines = Vec::new();
+    for start in &best.unstable_at_start {
+        let motion = if start.k > 0.0 { "oscillation" } else { "aperiodic motion" };
+        let since = if start.speed > first { "from" } else { "already at the first speed," };
+        lines.push(format!(
+            "unstable {since} {:.1} m/s: branch {} ({}), {motion}, g {:+.5}, k {:.4}",
+            start.speed,
+            start.branch,
+            kind(start.kind),
+            start.g,
+            start.k
+        ));
+    }
+    for crossing in &best.flutter {
+        let word = match crossing.kind {
+            Kind::Elastic => "flutter",
+            Kind::Rigid => "a rigid motion becomes unstable",
+        };
+        lines.push(format!(
+            "{word} at {:.1} m/s, {:.1} Hz, k {:.2}, branch {}",
+            crossing.speed, crossing.frequency_hz, crossing.k, crossing.branch
+        ));
+    }
+    for divergence in &best.divergence {
+        let word = match divergence.kind {
+            Kind::Elastic => "divergence",
+            Kind::Rigid => "a rigid motion becomes aperiodically unstable",
+        };
+        lines.push(format!("{word} at {:.1} m/s, branch {}", divergence.speed, divergence.branch));
+    }
+    if lines.is_empty() {
+        lines.push(format!("stable from {first:.1} to {last:.1} m/s"));
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn crossing(speed: f64, frequency_hz: f64) -> Crossing {
+        Crossing {
+            speed,
+            dynamic_pressure: 0.0,
+            frequency_hz,
+            k: 0.5,
+            branch: "elastic:5".to_owned(),
+            kind: Kind::Elastic,
+            altitude: None,
+            shape: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_verdict_names_speed_frequency_and_branch() {
+        let result =
+            MethodResult { flutter: vec![crossing(46.41, 56.02)], ..MethodResult::default() };
+        let lines = verdict(&result, 20.0, 75.0);
+        assert_eq!(lines, ["flutter at 46.4 m/s, 56.0 Hz, k 0.50, branch elastic:5"]);
+        let stable = verdict(&MethodResult::default(), 20.0, 75.0);
+        assert_eq!(stable, ["stable from 20.0 to 75.0 m/s"]);
+    }
+
+    #[test]
+    fn crossings_of_two_methods_meet_by_speed_and_frequency() {
+        let list = [crossing(40.0, 10.0), crossing(46.5, 30.0), crossing(46.6, 56.1)];
+        assert_eq!(counterpart(&list, &crossing(46.4, 56.0)), Some(46.6));
+        assert_eq!(counterpart(&list, &crossing(60.0, 56.0)), None);
+    }
+}

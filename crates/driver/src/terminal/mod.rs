@@ -1,0 +1,11 @@
+//! What people see while the program runs.
+
+mod console;
+mod interrupt;
+mod progress;
+mod table;
+
+pub(crate) use console::Console;
+pub(crate) use interrupt::watch as watch_for_interrupts;
+pub(crate) use progress::Bar;
+pub(crate) use table::{Align, Table};
