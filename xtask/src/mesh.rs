@@ -153,3 +153,86 @@ impl Wing {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use clap::Parser;
+    use fladder_mesh::read::read_mesh;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct OneWing {
+        #[command(flatten)]
+        wing: Wing,
+    }
+
+    fn wing(arguments: &[&str]) -> Wing {
+        OneWing::parse_from([&["wing"], arguments].concat()).wing
+    }
+
+    /// The mesh of the first case is the one the command in its case file makes.
+    #[test]
+    fn the_wing_of_the_first_case_is_what_the_command_makes() {
+        let arguments = [
+            "--chord",
+            "0.25",
+            "--span",
+            "2",
+            "--n-chord",
+            "12",
+            "--n-half-span",
+            "16",
+            "wing.msh",
+        ];
+        let made = wing(&arguments).mesh().unwrap();
+        let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/wing/wing.msh");
+        let kept = read_mesh(kept, 1.0).unwrap();
+        assert_eq!(
+            (&made.triangles, &made.surfaces, &made.curves),
+            (&kept.triangles, &kept.surfaces, &kept.curves)
+        );
+        // Sines and cosines differ in the last bit between machines.
+        let furthest = made
+            .vertices
+            .iter()
+            .zip(&kept.vertices)
+            .map(|(p, q)| (p - q).norm());
+        assert!(
+            made.vertices.len() == kept.vertices.len() && furthest.fold(0.0, f64::max) < 1e-14
+        );
+    }
+
+    #[test]
+    fn options_reach_the_shape() {
+        let half = wing(&["--half", "--sweep-deg", "-10", "--tip", "sharp", "out.msh"])
+            .mesh()
+            .unwrap();
+        assert!(half.vertices.iter().all(|p| p.y >= 0.0));
+        assert!(half.vertices.iter().any(|p| p.x < 0.0));
+        let irregular = wing(&["--unstructured", "7", "out.msh"]).mesh().unwrap();
+        assert_ne!(irregular, wing(&["out.msh"]).mesh().unwrap());
+        assert!(wing(&["--thickness", "0", "out.msh"]).mesh().is_err());
+    }
+
+    #[test]
+    fn a_written_sphere_is_read_back() {
+        let out =
+            std::env::temp_dir().join(format!("fladder-sphere-{}.msh", std::process::id()));
+        let said = Shape::Sphere {
+            radius: 2.0,
+            cut: Cut {
+                n: 3,
+                out: out.clone(),
+            },
+        }
+        .write()
+        .unwrap();
+        assert!(said.contains("92 vertices, 180 triangles"), "{said}");
+        let back = read_mesh(&out, 1.0).unwrap();
+        std::fs::remove_file(&out).unwrap();
+        assert_eq!(back, ellipsoid([2.0; 3], 3));
+    }
+}
