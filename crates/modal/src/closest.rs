@@ -108,7 +108,8 @@ fn refine(face: &Face, start: [f64; 2], point: &Vec3, positions: &[Vec3]) -> [f6
     let mut best = (point - face.point(at.into(), positions).position).norm_squared();
     for _ in 0..ITERATIONS {
         let step = step(face, at, point, positions);
-        if !(step.norm() > STEP_TOLERANCE) {
+        let length = step.norm();
+        if length <= STEP_TOLERANCE || length.is_nan() {
             break;
         }
         let next = inside(face, at, step);

@@ -86,7 +86,7 @@ impl Planner<'_> {
         self.check_names()?;
         let mut notes = Vec::new();
         let all: Vec<u32> = (0..self.skin.faces.len() as u32)
-            .filter(|f| self.skin.is_skin[*f as usize])
+            .filter(|f| self.skin.outer[*f as usize])
             .collect();
         let nearest_piece = self.nearest_pieces(&all)?;
         let mut components = Vec::new();
@@ -269,7 +269,7 @@ impl Planner<'_> {
             .map(|(piece, _)| *piece)
             .collect();
         let is_carrier =
-            |f: &usize| self.skin.is_skin[*f] && chosen.contains(&self.skin.piece[*f]);
+            |f: &usize| self.skin.outer[*f] && chosen.contains(&self.skin.piece[*f]);
         let faces = (0..self.skin.faces.len())
             .filter(is_carrier)
             .map(|f| f as u32)
@@ -302,7 +302,7 @@ impl Planner<'_> {
         }
         let skin: Vec<u32> = of_sets
             .iter()
-            .filter(|f| self.skin.is_skin[**f as usize])
+            .filter(|f| self.skin.outer[**f as usize])
             .copied()
             .collect();
         if 2 * skin.len() < of_sets.len() {

@@ -21,7 +21,7 @@ const FREQUENCY_TOLERANCE: (f64, f64) = (2e-5, 1e-4);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Eigenvalue {
     pub(crate) mode: u32,
-    pub(crate) eigenvalue: f64,
+    pub(crate) lambda: f64,
     pub(crate) frequency_hz: f64,
 }
 
@@ -41,10 +41,10 @@ pub(crate) fn read(path: &Path) -> Result<Tables, ReadError> {
             "E I G E N V A L U E   O U T P U T" => {
                 tables.eigenvalues.clear();
                 for (mode, row) in rows::<4>(&mut lines)? {
-                    let [eigenvalue, _, frequency_hz, _] = row;
+                    let [lambda, _, frequency_hz, _] = row;
                     tables.eigenvalues.push(Eigenvalue {
                         mode,
-                        eigenvalue,
+                        lambda,
                         frequency_hz,
                     });
                 }
@@ -120,7 +120,7 @@ pub(crate) fn refine(
             )));
         }
         mode.frequency_hz = row.frequency_hz;
-        mode.eigenvalue = Some(row.eigenvalue);
+        mode.eigenvalue = Some(row.lambda);
         let participation = tables
             .participation
             .iter()

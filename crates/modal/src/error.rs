@@ -25,6 +25,14 @@ pub enum ReadError {
         /// Start of its first line.
         start: String,
     },
+    /// A geometry file of no format known here.
+    #[error("{file} begins with {start:?}, which is no geometry known here (CalculiX .inp)")]
+    UnknownGeometry {
+        /// File as given.
+        file: String,
+        /// Start of its first line.
+        start: String,
+    },
     /// The file ends before it is complete.
     #[error("{file} is cut short after line {line}: {missing} is missing")]
     Truncated {

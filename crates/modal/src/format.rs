@@ -1,7 +1,7 @@
 //! The formats read, told from a file's first line rather than from its name.
 
 use crate::error::ReadError;
-use crate::text::Lines;
+use crate::text::first_line;
 use std::path::Path;
 
 /// A format of modal results.
@@ -33,27 +33,21 @@ impl Format {
 
 /// Tells the format from the first line that is not blank.
 pub(crate) fn detect(path: &Path) -> Result<Format, ReadError> {
-    let mut lines = Lines::open(path)?;
-    while let Some(line) = lines.next_line()? {
-        if line.trim().is_empty() {
-            continue;
-        }
-        if line.trim_start().starts_with('{') {
-            return Ok(Format::Neutral);
-        }
-        let key = line.trim_start();
-        if key.starts_with("1C") || key.starts_with("1U") {
-            return Ok(Format::CalculixFrd);
-        }
-        let start: String = key.chars().take(40).collect();
-        return Err(ReadError::UnknownFormat {
-            file: lines.name(),
-            start,
-        });
+    let line = first_line(path)?;
+    if line.starts_with('{') {
+        return Ok(Format::Neutral);
     }
-    Err(ReadError::Truncated {
-        file: lines.name(),
-        line: 0,
-        missing: "any content".to_owned(),
-    })
+    if line.starts_with("1C") || line.starts_with("1U") {
+        return Ok(Format::CalculixFrd);
+    }
+    Err(unknown(path, &line))
+}
+
+/// The error for a file that begins with `line`.
+pub(crate) fn unknown(path: &Path, line: &str) -> ReadError {
+    let start = line.chars().take(40).collect();
+    ReadError::UnknownFormat {
+        file: path.display().to_string(),
+        start,
+    }
 }

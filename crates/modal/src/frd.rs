@@ -69,12 +69,11 @@ impl Reader {
             let code = line.as_bytes().get(5).copied();
             match (field(line, 0, 5), code) {
                 ("1", Some(b'P')) => self.parameter()?,
-                ("1", _) => {}
                 ("2", Some(b'C')) => self.node_block()?,
                 ("3", Some(b'C')) => self.element_block()?,
                 ("100", Some(b'C')) => self.result_block()?,
-                ("9999", None) => return Ok(()),
-                ("", None) => {}
+                ("9999", None) => return self.rest(),
+                ("1", _) | ("", None) => {}
                 _ => {
                     return Err(self
                         .lines
@@ -82,6 +81,12 @@ impl Reader {
                 }
             }
         }
+    }
+
+    /// Reads on to the end of the file, where a gzip stream has its checksum.
+    fn rest(&mut self) -> Result<(), ReadError> {
+        while self.lines.next_line()?.is_some() {}
+        Ok(())
     }
 
     fn line(&mut self, missing: &str) -> Result<String, ReadError> {

@@ -191,7 +191,7 @@ fn elements(
     let set = keyword.get("ELSET").map(str::to_owned);
     while let Some(line) = next_data(lines)? {
         let Some(kind) = kind else { continue };
-        let element = one_element(lines, line, kind)?;
+        let element = one_element(lines, &line, kind)?;
         if let Some(set) = &set {
             reading
                 .members
@@ -204,10 +204,10 @@ fn elements(
 
 fn one_element(
     lines: &mut Lines,
-    first: String,
+    first: &str,
     kind: ElementKind,
 ) -> Result<RawElement, ReadError> {
-    let mut numbers = numbers(lines, &first)?;
+    let mut numbers = numbers(lines, first)?;
     let wanted = kind.node_count() + 1;
     while numbers.len() < wanted {
         let missing = numbers.first().map_or(0, |id| *id);
@@ -320,7 +320,7 @@ fn resolve(reading: &mut Reading, file: &Path) -> Result<(), ReadError> {
         match members {
             Members::One(id) => sets.add(&name, [id]),
             Members::Range { first, last, step } if first <= last => {
-                let inside = |id: &u64| (id - first) % step == 0;
+                let inside = |id: &u64| (id - first).is_multiple_of(step);
                 match of {
                     Of::Nodes => {
                         let nodes = reading.geometry.nodes.range(first..=last);

@@ -88,7 +88,8 @@ pub(crate) fn read(path: &Path) -> Result<(Geometry, ModeTable), ReadError> {
     let name = path.display().to_string();
     let file: File = serde_json::from_reader(text::open(path)?).map_err(|error| {
         let (file, line) = (name.clone(), error.line());
-        if error.is_eof() {
+        let cut = error.io_error_kind() == Some(io::ErrorKind::UnexpectedEof);
+        if cut || error.is_eof() {
             ReadError::Truncated {
                 file,
                 line,

@@ -4,7 +4,7 @@
 //! ω of the face there,
 //!
 //! $$ \mathbf u(\mathbf p) = \sum_i N_i \mathbf u_i
-//!    + \boldsymbol\omega \times (\mathbf p - \mathbf x), \qquad
+//! \;{+}\; \boldsymbol\omega \times (\mathbf p - \mathbf x), \qquad
 //!    \boldsymbol\omega = \sum_i \left[ -(\mathbf n \times \mathbf g_i)\,\mathbf n^T
 //!    + \tfrac12\,\mathbf n\,(\mathbf n \times \mathbf g_i)^T \right] \mathbf u_i, $$
 //!

@@ -5,8 +5,7 @@ use crate::error::ReadError;
 use crate::format::{self, Format};
 use crate::raw::{Geometry, ModeTable, RawElement, RawMode};
 use crate::result::{Element, ModalResult, Mode, NamedSet, Node};
-use crate::text::Lines;
-use crate::{dat, frd, inp, neutral};
+use crate::{dat, frd, inp, neutral, text};
 use fladder_mesh::Vec3;
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::TAU;
@@ -65,21 +64,15 @@ pub fn read_structure(
 
 /// Reads a file with nodes, elements and sets alone.
 fn read_geometry(path: &Path) -> Result<Geometry, ReadError> {
-    let mut lines = Lines::open(path)?;
-    while let Some(line) = lines.next_line()? {
-        let start = line.trim();
-        if start.starts_with('*') {
-            return inp::read(path);
-        }
-        if !start.is_empty() {
-            let start = start.chars().take(40).collect();
-            return Err(ReadError::UnknownFormat {
-                file: lines.name(),
-                start,
-            });
-        }
+    let line = text::first_line(path)?;
+    if line.starts_with('*') {
+        return inp::read(path);
     }
-    Err(lines.truncated("any content"))
+    let start = line.chars().take(40).collect();
+    Err(ReadError::UnknownGeometry {
+        file: path.display().to_string(),
+        start,
+    })
 }
 
 /// The `.dat` file beside a `.frd` file.

@@ -59,33 +59,25 @@ impl SurfaceSearch {
     }
 }
 
-/// Candidate faces and which of them are skin.
+/// Candidate faces, and which of them are outer skin.
 pub(crate) struct Skin {
     pub(crate) faces: Vec<Face>,
-    pub(crate) is_skin: Vec<bool>,
+    pub(crate) outer: Vec<bool>,
     /// Connected piece of the structure each face belongs to.
     pub(crate) piece: Vec<u32>,
 }
 
 impl Skin {
-    /// Finds the candidates and judges them.
-    pub(crate) fn find(
-        result: &ModalResult,
-        positions: &[Vec3],
-        surface: &SurfaceSearch,
-    ) -> Self {
-        let faces: Vec<Face> = candidates(result)
-            .into_iter()
-            .filter(|face| face.area(positions) > 0.0)
-            .collect();
-        let is_skin = faces
+    /// Judges the candidates by the wetted surface.
+    pub(crate) fn judge(faces: Vec<Face>, positions: &[Vec3], surface: &SurfaceSearch) -> Self {
+        let outer = faces
             .par_iter()
             .map(|face| lies_on(face, positions, surface))
             .collect();
         let piece = pieces(&faces, positions.len());
         Self {
             faces,
-            is_skin,
+            outer,
             piece,
         }
     }
@@ -99,7 +91,8 @@ fn lies_on(face: &Face, positions: &[Vec3], surface: &SurfaceSearch) -> bool {
         && across.dot(&normal).abs() >= NORMAL_COSINE * across.norm()
 }
 
-fn candidates(result: &ModalResult) -> Vec<Face> {
+/// Faces of some area that can be outer skin.
+pub(crate) fn candidates(result: &ModalResult, positions: &[Vec3]) -> Vec<Face> {
     let shells: Vec<Face> = result
         .elements
         .iter()
@@ -110,11 +103,13 @@ fn candidates(result: &ModalResult) -> Vec<Face> {
             element: index as u32,
         })
         .collect();
-    if shells.is_empty() {
+    let mut faces = if shells.is_empty() {
         free_solid_faces(result)
     } else {
         shells
-    }
+    };
+    faces.retain(|face| face.area(positions) > 0.0);
+    faces
 }
 
 /// Faces that one solid alone has.

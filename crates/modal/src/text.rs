@@ -9,6 +9,9 @@ use std::path::Path;
 /// No format read here has longer lines; a longer one is a binary file.
 const LINE_LIMIT: u64 = 1 << 16;
 
+/// Bytes in which the first line is looked for.
+const START: u64 = 4096;
+
 /// The decompressed content of a file.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn BufRead>, ReadError> {
     let failed = |source| ReadError::Io {
@@ -28,6 +31,30 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn BufRead>, ReadError> {
     } else {
         Box::new(reader)
     })
+}
+
+/// The first line that is not blank, as far as it lies within the first bytes;
+/// files of one long line are welcome here.
+pub(crate) fn first_line(path: &Path) -> Result<String, ReadError> {
+    let mut bytes = Vec::new();
+    let read = open(path)?.take(START).read_to_end(&mut bytes);
+    let file = path.display().to_string();
+    match read {
+        Err(source) if bytes.is_empty() && source.kind() != io::ErrorKind::UnexpectedEof => {
+            return Err(ReadError::Io { file, source });
+        }
+        _ => {}
+    }
+    let text = String::from_utf8_lossy(&bytes);
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    match text.lines().next() {
+        Some(line) => Ok(line.trim_end().to_owned()),
+        None => Err(ReadError::Truncated {
+            file,
+            line: 0,
+            missing: "any content".to_owned(),
+        }),
+    }
 }
 
 /// The lines of a text file, without line ends, counted from 1.

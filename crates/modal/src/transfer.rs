@@ -9,6 +9,7 @@ use crate::block_matrix::BlockMatrix;
 use crate::closest::FaceSearch;
 use crate::components::{Mapping, Plan, Planner, target_faces};
 use crate::error::TransferError;
+use crate::face::Face;
 use crate::model::StructuralModel;
 use crate::offset;
 use crate::read::{diagonal, ranges};
@@ -124,13 +125,14 @@ pub fn build(
 ) -> Result<Transfer, TransferError> {
     let positions = result.positions();
     let surface = SurfaceSearch::new(mesh).ok_or(TransferError::NoSurface)?;
-    let skin = Skin::find(result, &positions, &surface);
-    if skin.faces.is_empty() {
+    let faces = skin::candidates(result, &positions);
+    if faces.is_empty() {
         return Err(TransferError::NoSkin {
             elements: result.elements.len(),
         });
     }
-    let size_ratio = size_ratio(&skin, &positions, mesh)?;
+    let size_ratio = size_ratio(&faces, &positions, mesh)?;
+    let skin = Skin::judge(faces, &positions, &surface);
     let planner = Planner {
         result,
         positions: &positions,
@@ -165,16 +167,16 @@ pub fn build(
     })
 }
 
-fn size_ratio(skin: &Skin, positions: &[Vec3], mesh: &TriMesh) -> Result<f64, TransferError> {
-    let used: BTreeSet<u32> = skin
-        .faces
-        .iter()
-        .flat_map(|f| f.nodes.iter().copied())
-        .collect();
+fn size_ratio(
+    faces: &[Face],
+    positions: &[Vec3],
+    mesh: &TriMesh,
+) -> Result<f64, TransferError> {
+    let used: BTreeSet<u32> = faces.iter().flat_map(|f| f.nodes.iter().copied()).collect();
     let structure = diagonal(used.iter().map(|node| &positions[*node as usize]));
     let mesh = diagonal(mesh.vertices.iter());
     let ratio = mesh / structure;
-    if ratio >= SIZE_RATIO[0] && ratio <= SIZE_RATIO[1] {
+    if (SIZE_RATIO[0]..=SIZE_RATIO[1]).contains(&ratio) {
         return Ok(ratio);
     }
     Err(TransferError::Size {
@@ -267,7 +269,7 @@ fn report(plan: &Plan, skin: &Skin, carried: &[Carried], mesh: &TriMesh) -> Tran
             100.0 * (1.0 - report.overlap)
         ));
     }
-    let inside = skin.is_skin.iter().filter(|is_skin| !**is_skin).count();
+    let inside = skin.outer.iter().filter(|is_skin| !**is_skin).count();
     if inside == skin.faces.len() {
         report
             .notes
@@ -324,9 +326,9 @@ fn by_set(elements: &[u32], result: &ModalResult) -> String {
         if members.is_empty() {
             continue;
         }
-        members.iter().for_each(|member| {
+        for member in &members {
             rest.remove(member);
-        });
+        }
         let part = if members.len() == set.members.len() {
             format!("{} ({})", set.name, members.len())
         } else {
