@@ -17,6 +17,7 @@ mod chain;
 pub mod cli;
 mod commands;
 pub mod failure;
+mod figures;
 pub mod files;
 pub mod gaf_json;
 pub mod json;

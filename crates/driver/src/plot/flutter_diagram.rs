@@ -7,6 +7,7 @@ use super::panel::Panel;
 use super::style::{Styles, cross};
 use super::svg::{GREY, Svg};
 use super::{MethodResult, Subject};
+use crate::figures::three_digits;
 use fladder_stability::Branch;
 
 const HEIGHT: f64 = 900.0;
@@ -81,7 +82,7 @@ impl Quantity {
 }
 
 fn panels(lines: &MethodResult) -> (Panel<'static>, Panel<'static>) {
-    let (mut speed, mut frequency) = ([f64::INFINITY, f64::NEG_INFINITY], 1.0f64);
+    let (mut speed, mut frequency) = ([f64::INFINITY, f64::NEG_INFINITY], 1e-3f64);
     let mut damping = [-0.05f64, 0.05f64];
     for branch in &lines.branches {
         for (at, value) in Quantity::Frequency.of(branch) {
@@ -107,12 +108,12 @@ fn panels(lines: &MethodResult) -> (Panel<'static>, Panel<'static>) {
     };
     let upper = panel(
         TOP,
-        Axis::covering(0.0, 1.02 * frequency, 7),
+        Axis::exact(-0.03 * frequency, 1.08 * frequency, 7),
         "frequency  f  [Hz]",
     );
     let lower = panel(
         TOP + height + 62.0,
-        Axis::covering(1.05 * damping[0], 1.05 * damping[1], 7),
+        Axis::exact(1.05 * damping[0], 1.05 * damping[1], 7),
         "structural damping  2σ/ω  [–]",
     );
     (upper, lower)
@@ -154,9 +155,13 @@ fn crossings(
         let (value, text) = match quantity {
             Quantity::Frequency => (
                 crossing.frequency_hz,
-                format!("{:.1} m/s, {:.1} Hz", crossing.speed, crossing.frequency_hz),
+                format!(
+                    "{} m/s, {} Hz",
+                    three_digits(crossing.speed),
+                    three_digits(crossing.frequency_hz)
+                ),
             ),
-            Quantity::Damping => (0.0, format!("{:.1} m/s", crossing.speed)),
+            Quantity::Damping => (0.0, format!("{} m/s", three_digits(crossing.speed))),
         };
         if panel.contains(crossing.speed, value) {
             marked.push((panel.at(crossing.speed, value), text));
@@ -164,7 +169,7 @@ fn crossings(
     }
     for divergence in &lines.divergence {
         if quantity == Quantity::Frequency && panel.x.contains(divergence.speed) {
-            let text = format!("{:.1} m/s, divergence", divergence.speed);
+            let text = format!("{} m/s, divergence", three_digits(divergence.speed));
             marked.push((panel.at(divergence.speed, 0.0), text));
         }
     }

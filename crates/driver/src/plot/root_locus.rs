@@ -7,6 +7,7 @@ use super::panel::Panel;
 use super::style::{Styles, cross};
 use super::svg::{Anchor, GREY, Svg, Type};
 use super::{MethodResult, Subject};
+use crate::figures::three_digits;
 use fladder_stability::Branch;
 
 const HEIGHT: f64 = 780.0;
@@ -68,7 +69,7 @@ fn panel(lines: &MethodResult) -> Panel<'static> {
     Panel {
         area: [LEFT, TOP, right_edge(lines) - LEFT, HEIGHT - TOP - 88.0],
         x: Axis::covering(g[0] - margin, g[1] + margin, 8),
-        y: Axis::covering(-0.02 * k, 1.02 * k, 8),
+        y: Axis::exact(-0.03 * k, 1.05 * k, 8),
         x_label: "reduced damping  g = σb/U  [–]",
         y_label: "reduced frequency  k = ωb/U  [–]",
     }
@@ -111,13 +112,17 @@ fn draw_branch(
 fn crossings(svg: &mut Svg, panel: &Panel<'_>, lines: &MethodResult, curves: &[[f64; 2]]) {
     let mut marked: Vec<([f64; 2], String)> = Vec::new();
     for crossing in &lines.flutter {
-        let text = format!("{:.1} m/s, {:.1} Hz", crossing.speed, crossing.frequency_hz);
+        let text = format!(
+            "{} m/s, {} Hz",
+            three_digits(crossing.speed),
+            three_digits(crossing.frequency_hz)
+        );
         marked.push((panel.at(0.0, crossing.k), text));
     }
     for divergence in &lines.divergence {
         marked.push((
             panel.at(0.0, 0.0),
-            format!("{:.1} m/s, divergence", divergence.speed),
+            format!("{} m/s, divergence", three_digits(divergence.speed)),
         ));
     }
     let mut labels = Labels::new(panel.area, curves);

@@ -1,6 +1,7 @@
 //! Roots, crossings and the verdict in words.
 
 use crate::case::CaseFile;
+use crate::figures::three_digits;
 use crate::terminal::{Align, Console, Table};
 use fladder_stability::{Branch, Crossing, Kind, MethodResult, Methods};
 use std::f64::consts::{LN_2, TAU};
@@ -137,16 +138,7 @@ fn amplitude(sigma: f64) -> String {
         return "neither grows nor decays".to_owned();
     }
     let word = if sigma > 0.0 { "doubles" } else { "halves" };
-    format!("{word} in {} s", significant(LN_2 / sigma.abs()))
-}
-
-/// Three significant digits, without an exponent for everyday sizes.
-fn significant(value: f64) -> String {
-    if !(1e-4..1e6).contains(&value) {
-        return format!("{value:.2e}");
-    }
-    let decimals = (2.0 - value.log10().floor()).clamp(0.0, 6.0) as usize;
-    format!("{value:.decimals$}")
+    format!("{word} in {} s", three_digits(LN_2 / sigma.abs()))
 }
 
 fn completeness(console: &Console, best: &MethodResult) {
@@ -167,8 +159,8 @@ fn verdict(best: &MethodResult, first: f64, last: f64) -> Vec<String> {
         let motion = if start.k > 0.0 { "oscillation" } else { "aperiodic motion" };
         let since = if start.speed > first { "from" } else { "already at the first speed," };
         lines.push(format!(
-            "unstable {since} {:.1} m/s: branch {} ({}), {motion}, g {:+.5}, k {:.4}",
-            start.speed,
+            "unstable {since} {} m/s: branch {} ({}), {motion}, g {:+.5}, k {:.4}",
+            three_digits(start.speed),
             start.branch,
             kind(start.kind),
             start.g,
@@ -181,8 +173,11 @@ fn verdict(best: &MethodResult, first: f64, last: f64) -> Vec<String> {
             Kind::Rigid => "a rigid motion becomes unstable",
         };
         lines.push(format!(
-            "{word} at {:.1} m/s, {:.1} Hz, k {:.2}, branch {}",
-            crossing.speed, crossing.frequency_hz, crossing.k, crossing.branch
+            "{word} at {} m/s, {} Hz, k {:.2}, branch {}",
+            three_digits(crossing.speed),
+            three_digits(crossing.frequency_hz),
+            crossing.k,
+            crossing.branch
         ));
     }
     for divergence in &best.divergence {
@@ -190,7 +185,8 @@ fn verdict(best: &MethodResult, first: f64, last: f64) -> Vec<String> {
             Kind::Elastic => "divergence",
             Kind::Rigid => "a rigid motion becomes aperiodically unstable",
         };
-        lines.push(format!("{word} at {:.1} m/s, branch {}", divergence.speed, divergence.branch));
+        let speed = three_digits(divergence.speed);
+        lines.push(format!("{word} at {speed} m/s, branch {}", divergence.branch));
     }
     if lines.is_empty() {
         lines.push(format!("stable from {first:.1} to {last:.1} m/s"));
