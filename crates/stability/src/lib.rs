@@ -1,1 +1,56 @@
-//! Placeholder.
+//! Stability of an elastic aircraft: matrices in, roots out.
+//!
+//! $$ \bigl[M s^2 + C s + K - q_\infty Q(p)\bigr]\xi = 0,\qquad
+//!    p = \frac{sb}{U} = g + \mathrm ik,\quad q_\infty = \tfrac12\rho U^2 $$
+//!
+//! Given a structure ([`System`] or any [`Structure`]), samples of $Q$
+//! ([`GafTable`]) and a range of flight conditions ([`Schedule`]), a [`Sweep`]
+//! finds the roots by the p2 method (a quadratic $Q$ on each rectangle of the
+//! plane, Eller, IFASD-2009-119), by the p-k method, and refined on a smooth
+//! $Q(p)$; follows them over speed and finds where they cross into growth.
+//!
+//! Axes: x aft, y starboard, z up. Motion $e^{st}$, so positive $g$ grows.
+//! Nothing here knows about files, clocks or terminals.
+
+mod aerodynamics;
+mod assignment;
+mod crossing;
+mod divergence;
+mod eigenpair;
+mod flight;
+mod frame;
+mod gaf;
+mod linalg;
+mod p2;
+mod pk;
+mod polish;
+mod report;
+mod resolvers;
+mod results;
+mod rigid;
+mod spline;
+mod static_sweep;
+mod structure;
+mod sweep;
+mod system;
+mod track;
+
+pub use aerodynamics::{Aerodynamics, FromFunction};
+pub use eigenpair::Eigenpair;
+pub use flight::{Flight, Thrust, TrimLoads};
+pub use frame::{Frame, FrameError, to_body_frame};
+pub use gaf::{GafError, GafPoint, GafTable};
+pub use linalg::NoConvergence;
+pub use p2::{
+    Candidate, Cell, DEFAULT_DAMPING_LIMIT, FitError, FitReport, PiecewiseQuadratic, Region,
+};
+pub use pk::PkForm;
+pub use results::{
+    Branch, Crossing, Divergence, Kind, MethodResult, Methods, SCHEMA, SweepResult,
+    UnstableStart,
+};
+pub use rigid::{Matrix6, RIGID_NAMES, RigidBody, RigidBodyError, RigidModes};
+pub use spline::AxisSpline;
+pub use structure::{FlightPath, OperatingPoint, Schedule, StructuralMatrices, Structure};
+pub use sweep::{Method, Progress, Sweep, SweepError};
+pub use system::{DampingModel, System, SystemError};

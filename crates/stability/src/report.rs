@@ -1,0 +1,187 @@
+//! Tracks and crossings put into words and numbers.
+
+use std::collections::HashMap;
+
+use crate::crossing::Found;
+use crate::eigenpair::Eigenpair;
+use crate::results::{Branch, Crossing, Divergence, Kind, MethodResult, UnstableStart};
+use crate::structure::{OperatingPoint, Reduced};
+use crate::sweep::{Sweep, reduced_at};
+use crate::track::Track;
+
+/// Writes the outcome of one method.
+pub(crate) struct Reporter<'a> {
+    sweep: &'a Sweep<'a>,
+    points: &'a [OperatingPoint],
+    tracks: &'a [Track],
+    rigid: Vec<usize>,
+    names: Vec<String>,
+    kinds: Vec<Kind>,
+}
+
+impl<'a> Reporter<'a> {
+    pub(crate) fn new(
+        sweep: &'a Sweep<'a>,
+        points: &'a [OperatingPoint],
+        reduced: &[Reduced],
+        tracks: &'a [Track],
+    ) -> Self {
+        let rigid = sweep.structure.rigid_modes();
+        let shares: Vec<Vec<f64>> = tracks
+            .iter()
+            .map(|track| reduced[track.first].energy_shares(&track.roots[0].right))
+            .collect();
+        let leading = shares
+            .iter()
+            .map(|shares| leading_mode(sweep.structure.modes(), shares));
+        let names = unique_names(leading);
+        let kinds = shares
+            .iter()
+            .map(|shares| kind_of(shares, &rigid))
+            .collect();
+        Self {
+            sweep,
+            points,
+            tracks,
+            rigid,
+            names,
+            kinds,
+        }
+    }
+
+    pub(crate) fn report(&self, found: &[Found]) -> MethodResult {
+        let mut result = MethodResult::default();
+        for number in 0..self.tracks.len() {
+            result.branches.push(self.branch(number));
+            result
+                .unstable_at_start
+                .extend(self.unstable_start(number, found));
+        }
+        for crossing in found {
+            let entry = self.crossing(crossing);
+            if !crossing.is_rising {
+                result.restabilised.push(entry);
+            } else if crossing.pair.p.im > 0.0 {
+                result.flutter.push(entry);
+            } else {
+                result.divergence.push(Divergence {
+                    speed: entry.speed,
+                    dynamic_pressure: entry.dynamic_pressure,
+                    branch: entry.branch,
+                    kind: entry.kind,
+                    altitude: entry.altitude,
+                });
+            }
+        }
+        result.flutter.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        result
+            .restabilised
+            .sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        result
+            .divergence
+            .sort_by(|a, b| a.speed.total_cmp(&b.speed));
+        result
+    }
+
+    fn branch(&self, number: usize) -> Branch {
+        let track = &self.tracks[number];
+        let points = &self.points[track.first..=track.last()];
+        let mut branch = Branch {
+            name: self.names[number].clone(),
+            kind: self.kinds[number],
+            first: track.first,
+            ..Branch::default()
+        };
+        for (point, root) in points.iter().zip(&track.roots) {
+            let rate = point.airspeed / self.sweep.table.semichord();
+            branch.push(point.airspeed, rate, root);
+        }
+        let density = self.points[0].density;
+        if self.points.iter().any(|point| point.density != density) {
+            branch.density = Some(points.iter().map(|point| point.density).collect());
+            branch.altitude = points.iter().map(|point| point.altitude).collect();
+            branch.mach = points.iter().map(|point| point.mach).collect();
+        }
+        branch
+    }
+
+    fn crossing(&self, found: &Found) -> Crossing {
+        let point = self.sweep.schedule.at(found.parameter);
+        let reduced = reduced_at(self.sweep, found.parameter);
+        let shares = reduced.energy_shares(&found.pair.right);
+        Crossing {
+            speed: point.airspeed,
+            dynamic_pressure: point.dynamic_pressure(),
+            frequency_hz: found.pair.p.im * reduced.rate / std::f64::consts::TAU,
+            k: found.pair.p.im,
+            branch: self.names[found.track].clone(),
+            kind: kind_of(&shares, &self.rigid),
+            altitude: point.altitude,
+            shape: found.pair.right.clone(),
+        }
+    }
+
+    fn unstable_start(&self, number: usize, found: &[Found]) -> Option<UnstableStart> {
+        let track = &self.tracks[number];
+        let start = track.first as f64;
+        let has_crossed = found
+            .iter()
+            .any(|crossing| crossing.track == number && crossing.parameter < start);
+        let root = &track.roots[0];
+        (root.p.re > 0.0 && !has_crossed).then(|| UnstableStart {
+            branch: self.names[number].clone(),
+            g: root.p.re,
+            k: root.p.im,
+            speed: self.points[track.first].airspeed,
+            kind: self.kinds[number],
+        })
+    }
+}
+
+impl Branch {
+    fn push(&mut self, airspeed: f64, rate: f64, root: &Eigenpair) {
+        let (g, k) = (root.p.re, root.p.im);
+        let size = root.p.norm();
+        self.speed.push(airspeed);
+        self.g.push(g);
+        self.k.push(k);
+        self.sigma.push(g * rate);
+        self.omega.push(k * rate);
+        self.frequency_hz.push(k * rate / std::f64::consts::TAU);
+        self.damping_ratio.push((size > 0.0).then(|| -g / size));
+        self.structural_damping.push((k > 0.0).then(|| 2.0 * g / k));
+        self.shapes.push(root.right.clone());
+    }
+}
+
+/// Name of the mode with the largest share.
+pub(crate) fn leading_mode<'a>(modes: &'a [String], shares: &[f64]) -> &'a str {
+    let best = (0..shares.len()).max_by(|&a, &b| shares[a].total_cmp(&shares[b]));
+    best.map_or("", |mode| modes[mode].as_str())
+}
+
+/// Rigid when the rigid modes hold more than half of the kinetic energy.
+pub(crate) fn kind_of(shares: &[f64], rigid: &[usize]) -> Kind {
+    let held: f64 = rigid.iter().map(|&mode| shares[mode]).sum();
+    if held > 0.5 {
+        Kind::Rigid
+    } else {
+        Kind::Elastic
+    }
+}
+
+/// Adds `#2`, `#3` … to names that are taken.
+fn unique_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut uses: HashMap<&str, usize> = HashMap::new();
+    names
+        .map(|name| {
+            let count = uses.entry(name).or_insert(0);
+            *count += 1;
+            if *count == 1 {
+                name.to_owned()
+            } else {
+                format!("{name}#{count}")
+            }
+        })
+        .collect()
+}

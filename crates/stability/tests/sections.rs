@@ -1,0 +1,115 @@
+//! Typical sections with exact Theodorsen aerodynamics: flutter and divergence
+//! from 21 samples on the imaginary axis, against the exact solution.
+
+mod common;
+
+use common::{Section, data_path, number, range, section, speeds};
+use fladder_stability::{
+    DEFAULT_DAMPING_LIMIT, MethodResult, PiecewiseQuadratic, PkForm, Sweep, SweepResult,
+};
+
+fn sweep(section: &Section, from: f64, to: f64, count: usize) -> SweepResult {
+    let fit = PiecewiseQuadratic::centred(&section.table, DEFAULT_DAMPING_LIMIT).unwrap();
+    let schedule = speeds(range(from, to, count), section.density);
+    Sweep {
+        structure: &section.system,
+        schedule: &schedule,
+        table: &section.table,
+        fit: &fit,
+        smooth: None,
+        method: fladder_stability::Method::Both,
+        pk_form: PkForm::Complex,
+    }
+    .run(&())
+    .unwrap()
+}
+
+fn check_flutter(name: &str, result: &MethodResult, section: &Section, tolerance: f64) {
+    let reference = &section.file["flutter"][0];
+    let (speed, k) = (number(&reference["U"]), number(&reference["k"]));
+    assert_eq!(result.flutter.len(), 1, "{name}: {:?}", result.flutter);
+    let found = &result.flutter[0];
+    println!(
+        "{name}: U* = {:.8}, exact {speed:.8}, error {:.1e}; k = {:.8}, exact {k:.8}",
+        found.speed,
+        found.speed / speed - 1.0,
+        found.k
+    );
+    assert!((found.speed / speed - 1.0).abs() < tolerance);
+    assert!((found.k / k - 1.0).abs() < 10.0 * tolerance);
+}
+
+/// Flutter of the section of Hodges & Pierce's proportions, U* = 2.1839 with
+/// the exact C(k), by both methods.
+#[test]
+fn two_degree_section_flutters_at_the_exact_speed() {
+    let section = section("stability_section2_theodorsen.json", |g| g == 0.0);
+    let result = sweep(&section, 1.5, 2.6, 12);
+    check_flutter("p2", result.methods.p2.as_ref().unwrap(), &section, 1e-4);
+    check_flutter("p-k", result.methods.pk.as_ref().unwrap(), &section, 1e-5);
+}
+
+/// The same for three degrees of freedom with a flap.
+#[test]
+fn three_degree_section_flutters_at_the_exact_speed() {
+    let section = section("stability_section3_theodorsen.json", |g| g == 0.0);
+    let result = sweep(&section, 2.0, 4.0, 21);
+    check_flutter("p2", result.methods.p2.as_ref().unwrap(), &section, 1e-4);
+    check_flutter("p-k", result.methods.pk.as_ref().unwrap(), &section, 1e-5);
+}
+
+/// Static divergence needs Q(0) alone and is exact.
+#[test]
+fn sections_diverge_at_the_exact_speed() {
+    for (name, from, to) in [
+        ("stability_section2_theodorsen.json", 2.0, 4.0),
+        ("stability_section3_theodorsen.json", 5.0, 8.0),
+    ] {
+        let section = section(name, |g| g == 0.0);
+        let result = sweep(&section, from, to, 21);
+        let divergence = &result.methods.pk.unwrap().divergence;
+        let exact = number(&section.file["divergence_U"][0]);
+        println!("{name}: {:?}, exact {exact}", divergence);
+        assert_eq!(divergence.len(), 1);
+        assert!((divergence[0].speed / exact - 1.0).abs() < 1e-12);
+        let p2 = &result.methods.p2.unwrap().divergence;
+        assert_eq!(p2.len(), 1);
+        assert!((p2[0].speed / exact - 1.0).abs() < 1e-9);
+    }
+}
+
+/// p-k roots of the section at 13 speeds, against the file; the samples are
+/// 21, so the interpolation limits the agreement.
+#[test]
+fn pk_roots_agree_with_the_reference() {
+    let section = section("stability_section2_theodorsen.json", |g| g == 0.0);
+    let text = std::fs::read_to_string(data_path("typical_section_pk_open.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = text
+        .lines()
+        .filter(|line| line.starts_with("TS1_classic"))
+        .map(|line| line.split(',').collect())
+        .collect();
+    let value = |row: &[&str], column: usize| row[column].parse::<f64>().unwrap();
+    let (mut checked, mut worst): (usize, f64) = (0, 0.0);
+    for row in &rows {
+        let (speed, g, k) = (value(row, 1), value(row, 2), value(row, 3));
+        // Heavily damped roots amplify the interpolation error of Q.
+        if k > 1.5 || g < -0.2 {
+            continue;
+        }
+        let result = sweep(&section, speed, speed, 2).methods.pk.unwrap();
+        let nearest = result
+            .branches
+            .iter()
+            .map(|branch| (branch.g[0] - g).hypot(branch.k[0] - k))
+            .fold(f64::INFINITY, f64::min);
+        worst = worst.max(nearest);
+        checked += 1;
+        assert!(
+            nearest < 1e-4,
+            "V = {speed}, g = {g}, k = {k}: off by {nearest}"
+        );
+    }
+    println!("{checked} p-k roots, largest difference {worst:.1e}");
+    assert!(checked >= 20);
+}

@@ -1,0 +1,322 @@
+//! The free-flying wing with 26 modes: six rigid, twenty elastic, gravity, and
+//! aerodynamics in closed form, so that every root is known.
+
+mod common;
+
+use std::time::Instant;
+
+use common::{Wing, number, range, roots, speeds};
+use faer::c64;
+use fladder_stability::{
+    Aerodynamics, DEFAULT_DAMPING_LIMIT, FromFunction, Method, MethodResult,
+    PiecewiseQuadratic, PkForm, Sweep, SweepResult,
+};
+
+fn sweep(
+    wing: &Wing,
+    values: impl IntoIterator<Item = f64>,
+    method: Method,
+    smooth: Option<&dyn Aerodynamics>,
+) -> SweepResult {
+    let table = wing.table(&[0.0]);
+    let fit = PiecewiseQuadratic::centred(&table, DEFAULT_DAMPING_LIMIT).unwrap();
+    assert_eq!(fit.report().rank, fit.report().unknowns);
+    let schedule = speeds(values, wing.density());
+    Sweep {
+        structure: wing,
+        schedule: &schedule,
+        table: &table,
+        fit: &fit,
+        smooth,
+        method,
+        pk_form: PkForm::Complex,
+    }
+    .run(&())
+    .unwrap()
+}
+
+/// The closed form of the file is the one evaluated here.
+#[test]
+fn closed_form_agrees_with_its_check_values() {
+    let wing = Wing::read();
+    for check in wing.file["Q_check"].as_array().unwrap() {
+        let place = common::numbers(&check["p"]);
+        let q = wing.q(c64::new(place[0], place[1]));
+        let (re, im) = (
+            common::matrix(&check["Q"]["re"]),
+            common::matrix(&check["Q"]["im"]),
+        );
+        for i in 0..26 {
+            for j in 0..26 {
+                let exact = c64::new(re[(i, j)], im[(i, j)]);
+                assert!((q[(i, j)] - exact).norm() <= 1e-12 * (1.0 + exact.norm()));
+            }
+        }
+    }
+}
+
+fn found_at(result: &MethodResult, number: usize) -> Vec<c64> {
+    result
+        .branches
+        .iter()
+        .filter(|branch| branch.first <= number && number < branch.first + branch.g.len())
+        .map(|branch| {
+            c64::new(
+                branch.g[number - branch.first],
+                branch.k[number - branch.first],
+            )
+        })
+        .collect()
+}
+
+fn distance(to: c64, among: &[c64]) -> f64 {
+    among
+        .iter()
+        .map(|root| (root - to).norm())
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Errors of a method against the truth at the twelve speeds.
+fn errors(wing: &Wing, result: &MethodResult, wanted: impl Fn(c64) -> bool) -> Vec<f64> {
+    let mut errors = Vec::new();
+    for (number, truth) in wing.truth().iter().enumerate() {
+        let found = found_at(result, number);
+        for root in roots(&truth["roots"])
+            .into_iter()
+            .filter(|root| wanted(*root))
+        {
+            errors.push(distance(root, &found));
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    errors
+}
+
+fn truth_speeds(wing: &Wing) -> Vec<f64> {
+    wing.truth()
+        .iter()
+        .map(|truth| number(&truth["U"]))
+        .collect()
+}
+
+/// Near the axis ($|g| < 0.02$, $0.05 < k < 1.5$) every root is within 5e-5 of
+/// the truth, and at every speed there are exactly four zero roots.
+#[test]
+fn p2_roots_near_the_axis_agree_with_the_truth() {
+    let wing = Wing::read();
+    let result = sweep(&wing, truth_speeds(&wing), Method::P2, None)
+        .methods
+        .p2
+        .unwrap();
+    let near = |p: c64| p.re.abs() < 0.02 && p.im > 0.05 && p.im < 1.5;
+    let errors = errors(&wing, &result, near);
+    println!(
+        "{} roots near the axis: median error {:.1e}, largest {:.1e}",
+        errors.len(),
+        errors[errors.len() / 2],
+        errors[errors.len() - 1]
+    );
+    assert!(errors[errors.len() - 1] < 5e-5);
+    assert!(
+        result.zero_roots.iter().all(|zeros| *zeros == 4),
+        "{:?}",
+        result.zero_roots
+    );
+}
+
+/// No root of p2 with |g| < 0.1 is invented: each has a true one beside it.
+/// Further from the axis a quadratic continued from it is a guess.
+#[test]
+fn p2_invents_no_root() {
+    let wing = Wing::read();
+    let result = sweep(&wing, truth_speeds(&wing), Method::P2, None)
+        .methods
+        .p2
+        .unwrap();
+    for (number, truth) in wing.truth().iter().enumerate() {
+        let exact = roots(&truth["roots"]);
+        let found = found_at(&result, number);
+        for root in found.iter().filter(|root| root.re.abs() < 0.1) {
+            let miss = distance(*root, &exact);
+            assert!(
+                miss < 0.02 + 0.2 * root.re.abs(),
+                "speed {number}: {root} has no partner"
+            );
+        }
+        let wanted = exact
+            .iter()
+            .filter(|p| p.re.abs() < 0.1 && p.im < 1.49 && p.norm() > 1e-9)
+            .count();
+        let inside = found
+            .iter()
+            .filter(|p| p.re.abs() < 0.1 && p.im < 1.49)
+            .count();
+        println!("speed {number}: {inside} roots with |g| < 0.1, true {wanted}");
+    }
+}
+
+fn check_crossings(wing: &Wing, result: &MethodResult, tolerance: f64, name: &str) {
+    let exact = wing.file["crossings"].as_array().unwrap();
+    let speeds: Vec<f64> = result
+        .flutter
+        .iter()
+        .map(|crossing| crossing.speed)
+        .collect();
+    assert_eq!(speeds.len(), exact.len(), "{speeds:?}");
+    for (found, exact) in result.flutter.iter().zip(exact) {
+        let (speed, hertz) = (number(&exact["U"]), number(&exact["f_hz"]));
+        println!(
+            "{name}: {:.5} m/s (exact {speed:.5}, error {:.1e}), {:.4} Hz (exact {hertz:.4}), {} {:?}",
+            found.speed,
+            found.speed / speed - 1.0,
+            found.frequency_hz,
+            found.branch,
+            found.kind
+        );
+        assert!((found.speed / speed - 1.0).abs() < tolerance);
+        assert!((found.frequency_hz / hertz - 1.0).abs() < 10.0 * tolerance);
+    }
+}
+
+/// Four crossings by p2 from 21 samples, within 1e-4.
+#[test]
+fn p2_crossings_agree_with_the_truth() {
+    let wing = Wing::read();
+    let result = sweep(&wing, range(20.0, 75.0, 56), Method::P2, None)
+        .methods
+        .p2
+        .unwrap();
+    check_crossings(&wing, &result, 1e-4, "p2");
+}
+
+/// The same from the p-k method: at a crossing $g = 0$ and it is exact but
+/// for the interpolation.
+#[test]
+fn pk_crossings_agree_with_the_truth() {
+    let wing = Wing::read();
+    let result = sweep(&wing, range(20.0, 75.0, 56), Method::Pk, None)
+        .methods
+        .pk
+        .unwrap();
+    check_crossings(&wing, &result, 1e-6, "p-k");
+}
+
+/// Refined on the closed form the crossings are exact, and so are the roots.
+#[test]
+fn polished_roots_and_crossings_are_exact() {
+    let wing = Wing::read();
+    let smooth = FromFunction::new(26, |p| wing.q(p));
+    let result = sweep(&wing, truth_speeds(&wing), Method::P2, Some(&smooth));
+    let result = result.methods.polished.unwrap();
+    let inside = |p: c64| p.re.abs() < 0.2 && p.im < 1.5 && p.norm() > 1e-9;
+    let errors = errors(&wing, &result, inside);
+    println!(
+        "{} polished roots: median error {:.1e}, largest {:.1e}",
+        errors.len(),
+        errors[errors.len() / 2],
+        errors[errors.len() - 1]
+    );
+    assert!(errors[errors.len() - 1] < 1e-9);
+    let result = sweep(&wing, range(20.0, 75.0, 56), Method::P2, Some(&smooth));
+    check_crossings(&wing, &result.methods.polished.unwrap(), 1e-10, "polished");
+}
+
+/// p-k roots at the speeds where the file lists them; the 21 samples limit
+/// the agreement.
+#[test]
+fn pk_roots_agree_with_the_reference() {
+    let wing = Wing::read();
+    let result = sweep(&wing, truth_speeds(&wing), Method::Pk, None)
+        .methods
+        .pk
+        .unwrap();
+    let mut worst: f64 = 0.0;
+    let mut count = 0;
+    for (number, truth) in wing.truth().iter().enumerate() {
+        let found = found_at(&result, number);
+        for root in roots(&truth["pk_roots"]) {
+            if root.im < 1.5 {
+                count += 1;
+                worst = worst.max(distance(root, &found));
+            }
+        }
+    }
+    println!("{count} p-k roots, largest error {worst:.1e}");
+    assert!(count > 40 && worst < 1e-5);
+}
+
+/// Branches do not depend on the step in speed: the roots at 20 and 75 m/s
+/// that one branch joins are the same for steps from 0.5 to 8 m/s.
+#[test]
+fn steps_in_speed_give_the_same_branches() {
+    let wing = Wing::read();
+    let mut ends: Vec<Vec<(f64, f64)>> = Vec::new();
+    for step in [0.5, 1.0, 2.0, 4.0, 8.0] {
+        let count = 1 + (48.0 / step) as usize;
+        let result = sweep(&wing, range(20.0, 68.0, count), Method::P2, None)
+            .methods
+            .p2
+            .unwrap();
+        let mut joined: Vec<(f64, f64)> = result
+            .branches
+            .iter()
+            .filter(|branch| branch.first == 0 && branch.g.len() == count && branch.k[0] > 0.01)
+            .map(|branch| (branch.omega[0], branch.omega[count - 1]))
+            .collect();
+        joined.sort_by(|a, b| a.0.total_cmp(&b.0));
+        println!(
+            "step {step}: {} branches over the whole range, {} in all",
+            joined.len(),
+            result.branches.len()
+        );
+        ends.push(joined);
+    }
+    for joined in &ends {
+        assert_eq!(joined.len(), ends[0].len());
+        for (one, other) in joined.iter().zip(&ends[0]) {
+            assert!(
+                (one.0 - other.0).abs() < 1e-9 && (one.1 - other.1).abs() < 1e-9,
+                "{one:?} {other:?}"
+            );
+        }
+    }
+}
+
+/// The bits of the outcome do not depend on the number of threads.
+#[test]
+fn thread_count_leaves_every_bit() {
+    let wing = Wing::read();
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let result = sweep(&wing, range(20.0, 75.0, 12), Method::Both, None);
+            serde_json::to_string(&result).unwrap()
+        })
+    };
+    let one = with(1);
+    assert!(!one.contains("NaN"));
+    assert_eq!(one, with(3));
+}
+
+/// Time of the size a whole aircraft has; printed, not judged.
+#[test]
+fn two_hundred_speeds_are_timed() {
+    let wing = Wing::read();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(2)
+        .build()
+        .unwrap();
+    for (method, name) in [(Method::P2, "p2"), (Method::Pk, "p-k")] {
+        let start = Instant::now();
+        let result = pool.install(|| sweep(&wing, range(20.0, 75.0, 200), method, None));
+        println!(
+            "{name}: 200 speeds, 26 modes, 2 threads: {:.2} s",
+            start.elapsed().as_secs_f64()
+        );
+        let outcome = result.methods.p2.or(result.methods.pk).unwrap();
+        assert!(outcome.branches.len() > 10);
+    }
+}
