@@ -11,7 +11,12 @@ use std::process::ExitCode;
 /// Flutter and flight-dynamic stability from a surface mesh and vibration
 /// modes.
 #[derive(Debug, Parser)]
-#[command(name = "fladder", version, subcommand_required = true, arg_required_else_help = true)]
+#[command(
+    name = "fladder",
+    version,
+    subcommand_required = true,
+    arg_required_else_help = true
+)]
 struct Cli {
     #[command(flatten)]
     common: Common,
@@ -134,7 +139,9 @@ pub(crate) enum Method {
 fn laplace_point(text: &str) -> Result<[f64; 2], String> {
     let parts: Vec<&str> = text.split(',').collect();
     let [g, k] = parts[..] else {
-        return Err("write two numbers with a comma between them, for example -0.1,0.2".to_owned());
+        return Err(
+            "write two numbers with a comma between them, for example -0.1,0.2".to_owned(),
+        );
     };
     let number = |part: &str| {
         let value: Result<f64, _> = part.trim().parse();
@@ -176,7 +183,11 @@ pub fn main() -> ExitCode {
 fn usage(error: &clap::Error) -> u8 {
     // Where the stream is closed there is nobody to tell.
     let _ = error.print();
-    if error.use_stderr() { exit::INPUT } else { exit::DONE }
+    if error.use_stderr() {
+        exit::INPUT
+    } else {
+        exit::DONE
+    }
 }
 
 fn complain(text: &str) {
@@ -197,12 +208,18 @@ fn run(cli: Cli) -> Result<(), Failure> {
     let session = commands::Session { common, console };
     match cli.command {
         Command::Run { case, method } => commands::run(&session, &case, method)?,
-        Command::Gaf { case, json, at } => commands::gaf(&session, &case, json.as_deref(), &at)?,
+        Command::Gaf { case, json, at } => {
+            commands::gaf(&session, &case, json.as_deref(), &at)?
+        }
         Command::Sweep { case, json, method } => {
             commands::sweep(&session, &case, json.as_deref(), method)?;
         }
         Command::Check { input, json } => commands::check(&session, &input, json.as_deref())?,
-        Command::Modes { file, geometry, json } => {
+        Command::Modes {
+            file,
+            geometry,
+            json,
+        } => {
             commands::modes(&session, &file, geometry.as_deref(), json.as_deref())?;
         }
         Command::Cache { action } => commands::cache(&session, &action)?,
@@ -223,9 +240,10 @@ fn threads_failed(error: &rayon::ThreadPoolBuildError) -> Failure {
 /// what a report needs.
 fn report_panics() {
     std::panic::set_hook(Box::new(|panic| {
-        let place = panic
-            .location()
-            .map_or_else(|| "unknown".to_owned(), |at| format!("{}:{}", at.file(), at.line()));
+        let place = panic.location().map_or_else(
+            || "unknown".to_owned(),
+            |at| format!("{}:{}", at.file(), at.line()),
+        );
         let failure = Failure::numerical(
             format!("this should not have happened: {}", message(panic)),
             format!("fladder {}, {place}", env!("CARGO_PKG_VERSION")),
@@ -255,8 +273,11 @@ mod tests {
 
     #[test]
     fn points_may_begin_with_a_minus_sign_and_the_cut_is_refused() {
-        let cli = Cli::try_parse_from(["fladder", "gaf", "c", "--at", "-0.1,0.2", "--at", "0,0"]);
-        let Command::Gaf { at, .. } = cli.unwrap().command else { panic!("another command") };
+        let cli =
+            Cli::try_parse_from(["fladder", "gaf", "c", "--at", "-0.1,0.2", "--at", "0,0"]);
+        let Command::Gaf { at, .. } = cli.unwrap().command else {
+            panic!("another command")
+        };
         assert_eq!(at, [[-0.1, 0.2], [0.0, 0.0]]);
         let refused = Cli::try_parse_from(["fladder", "gaf", "c", "--at", "-0.1,0"]);
         assert!(refused.unwrap_err().to_string().contains("branch cut"));

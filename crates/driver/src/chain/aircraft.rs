@@ -40,7 +40,11 @@ impl Aircraft {
         }
         let mut report = None;
         if let Some(model) = &structure.model {
-            let given = file.case.structure.as_ref().and_then(|s| s.components.clone());
+            let given = file
+                .case
+                .structure
+                .as_ref()
+                .and_then(|s| s.components.clone());
             let (elastic, transferred) =
                 modal::transfer(model, &surface.mesh, &given.unwrap_or_default())
                     .map_err(|error| not_transferred(file, &error))?;
@@ -67,7 +71,12 @@ impl Aircraft {
                 "add [structure] with a result file or mass properties, or [[modes.analytic]]",
             ));
         }
-        Ok(Self { surface, structure, modes, transfer: report })
+        Ok(Self {
+            surface,
+            structure,
+            modes,
+            transfer: report,
+        })
     }
 
     /// Names of the modes, in order.
@@ -78,9 +87,16 @@ impl Aircraft {
     /// Number of modes that take part in sweeps: analytic modes do so only
     /// where their mass and stiffness are given.
     pub(crate) fn swept_modes(&self, file: &CaseFile) -> usize {
-        let has_matrices =
-            file.case.structure.as_ref().is_some_and(|given| given.matrices.is_some());
-        let analytic = if has_matrices { 0 } else { file.case.modes.analytic.len() };
+        let has_matrices = file
+            .case
+            .structure
+            .as_ref()
+            .is_some_and(|given| given.matrices.is_some());
+        let analytic = if has_matrices {
+            0
+        } else {
+            file.case.modes.analytic.len()
+        };
         self.modes.len() - analytic
     }
 }
@@ -101,11 +117,18 @@ fn analytic(mode: &case::AnalyticMode) -> modal::AnalyticMode {
             axis: Vec3::from(rotation.axis),
             point: Vec3::from(rotation.point),
         },
-        (None, None) => {
-            Motion::Polynomial(mode.polynomial.iter().flatten().map(polynomial_term).collect())
-        }
+        (None, None) => Motion::Polynomial(
+            mode.polynomial
+                .iter()
+                .flatten()
+                .map(polynomial_term)
+                .collect(),
+        ),
     };
-    modal::AnalyticMode { name: mode.name.clone(), motion }
+    modal::AnalyticMode {
+        name: mode.name.clone(),
+        motion,
+    }
 }
 
 fn polynomial_term(term: &Term) -> PolynomialTerm {

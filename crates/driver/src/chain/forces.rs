@@ -8,7 +8,9 @@ use crate::failure::Failure;
 use crate::gaf_json::{self, Document, Frame, Given};
 use faer::{Mat, c64};
 use fladder_bem::TransferModel;
-use fladder_stability::{self as stability, Aerodynamics, GafPoint, GafTable, PiecewiseQuadratic};
+use fladder_stability::{
+    self as stability, Aerodynamics, GafPoint, GafTable, PiecewiseQuadratic,
+};
 use std::path::PathBuf;
 
 /// Samples of $Q$ with all that belongs to them.
@@ -37,7 +39,8 @@ impl Forces {
         document: &Document,
     ) -> Result<Self, Failure> {
         let order = aircraft.swept_modes(file);
-        let entry = |q: &Vec<Vec<[f64; 2]>>, i: usize, j: usize| c64::new(q[i][j][0], q[i][j][1]);
+        let entry =
+            |q: &Vec<Vec<[f64; 2]>>, i: usize, j: usize| c64::new(q[i][j][0], q[i][j][1]);
         let points = document
             .points
             .iter()
@@ -82,10 +85,17 @@ impl Forces {
         let place = path.display().to_string();
         fits(file, &given, &place)?;
         let names = structure.mode_names();
-        let has_matrices =
-            file.case.structure.as_ref().is_some_and(|given| given.matrices.is_some());
+        let has_matrices = file
+            .case
+            .structure
+            .as_ref()
+            .is_some_and(|given| given.matrices.is_some());
         let modes = given.table.modes();
-        let agree = if has_matrices { modes.starts_with(&names) } else { modes == names };
+        let agree = if has_matrices {
+            modes.starts_with(&names)
+        } else {
+            modes == names
+        };
         if file.case.structure.is_some() && !agree {
             return Err(Failure::input(
                 format!(
@@ -98,8 +108,18 @@ impl Forces {
                 "order and name the modes of the file as the case does: rigid, elastic, analytic",
             ));
         }
-        let alpha_deg = angle(file, "flow.alpha_deg", file.case.flow.alpha_deg, given.alpha_deg)?;
-        let beta_deg = angle(file, "flow.beta_deg", file.case.flow.beta_deg, given.beta_deg)?;
+        let alpha_deg = angle(
+            file,
+            "flow.alpha_deg",
+            file.case.flow.alpha_deg,
+            given.alpha_deg,
+        )?;
+        let beta_deg = angle(
+            file,
+            "flow.beta_deg",
+            file.case.flow.beta_deg,
+            given.beta_deg,
+        )?;
         let made = Self {
             table: given.table,
             alpha: alpha_deg.to_radians(),
@@ -121,16 +141,18 @@ impl Forces {
             self.notes.extend_from_slice(self.table.notes());
             return Ok(self);
         };
-        let frames: Vec<stability::Frame> = frames.iter().map(|frame| (*frame).into()).collect();
-        self.table = stability::to_body_frame(self.table, &frames, &stability_body(body), self.alpha)
-            .map_err(|error| {
-                Failure::input(
-                    error.to_string(),
-                    file.places.of("gaf.file"),
-                    "rigid modes are swept in body axes",
-                    "give all six rigid modes in the file, or those in frame body",
-                )
-            })?;
+        let frames: Vec<stability::Frame> =
+            frames.iter().map(|frame| (*frame).into()).collect();
+        self.table =
+            stability::to_body_frame(self.table, &frames, &stability_body(body), self.alpha)
+                .map_err(|error| {
+                    Failure::input(
+                        error.to_string(),
+                        file.places.of("gaf.file"),
+                        "rigid modes are swept in body axes",
+                        "give all six rigid modes in the file, or those in frame body",
+                    )
+                })?;
         self.notes.extend_from_slice(self.table.notes());
         Ok(self)
     }
@@ -138,7 +160,12 @@ impl Forces {
 
 /// The file of the case's Mach number, or the only one.
 fn chosen(file: &CaseFile) -> Result<(PathBuf, Given), Failure> {
-    let listed = file.case.gaf.file.as_ref().map_or(&[][..], |files| files.as_slice());
+    let listed = file
+        .case
+        .gaf
+        .file
+        .as_ref()
+        .map_or(&[][..], |files| files.as_slice());
     let mut read = Vec::new();
     for path in listed {
         let full = file.existing("gaf.file", path)?;
@@ -146,17 +173,24 @@ fn chosen(file: &CaseFile) -> Result<(PathBuf, Given), Failure> {
         read.push((full, given));
     }
     let is_single = read.len() == 1 && !file.places.has("flow.mach");
-    let there: Vec<String> =
-        read.iter().map(|(_, given)| given.table.mach().to_string()).collect();
+    let there: Vec<String> = read
+        .iter()
+        .map(|(_, given)| given.table.mach().to_string())
+        .collect();
     let mach = file.case.flow.mach;
-    read.into_iter().find(|(_, given)| is_single || given.table.mach() == mach).ok_or_else(|| {
-        Failure::input(
-            format!("no file of forces has Mach number {mach}; there are {}", there.join(", ")),
-            file.places.of("gaf.file"),
-            "forces of another Mach number give other roots",
-            "set flow.mach to one of these, or give the file of that Mach number",
-        )
-    })
+    read.into_iter()
+        .find(|(_, given)| is_single || given.table.mach() == mach)
+        .ok_or_else(|| {
+            Failure::input(
+                format!(
+                    "no file of forces has Mach number {mach}; there are {}",
+                    there.join(", ")
+                ),
+                file.places.of("gaf.file"),
+                "forces of another Mach number give other roots",
+                "set flow.mach to one of these, or give the file of that Mach number",
+            )
+        })
 }
 
 fn fits(file: &CaseFile, given: &Given, place: &str) -> Result<(), Failure> {
@@ -202,12 +236,14 @@ impl Aerodynamics for ExactForces<'_> {
     /// pole every entry is NaN, which no iteration takes for a root.
     fn q(&self, p: c64) -> Mat<c64> {
         let on_cut = p.im == 0.0 && p.re < 0.0;
-        let at = if on_cut { c64::new(p.re, BESIDE_CUT * -p.re) } else { p };
+        let at = if on_cut {
+            c64::new(p.re, BESIDE_CUT * -p.re)
+        } else {
+            p
+        };
         let order = self.order();
         match self.transfer.q(at) {
-            Ok(q) if on_cut => {
-                Mat::from_fn(order, order, |i, j| c64::new(q[(i, j)].re, 0.0))
-            }
+            Ok(q) if on_cut => Mat::from_fn(order, order, |i, j| c64::new(q[(i, j)].re, 0.0)),
             Ok(q) => q.submatrix(0, 0, order, order).to_owned(),
             Err(_) => Mat::from_fn(order, order, |_, _| c64::new(f64::NAN, f64::NAN)),
         }

@@ -37,7 +37,11 @@ impl Stored for StoredForces {
         let angles = [self.mach, self.alpha_deg, self.beta_deg];
         transfer.is_sound()
             && steady.generalised_forces.len() == transfer.n_modes()
-            && steady.generalised_forces.iter().chain(&angles).all(|value| value.is_finite())
+            && steady
+                .generalised_forces
+                .iter()
+                .chain(&angles)
+                .all(|value| value.is_finite())
     }
 }
 
@@ -91,9 +95,20 @@ pub(crate) fn key(file: &CaseFile, problem: &Problem<'_>) -> Key {
         .numbers("vertices", coordinates.into_iter())
         .indices("triangles", corners.into_iter())
         .numbers("mach", [file.case.flow.mach].into_iter())
-        .numbers("incidence", [problem.flow.alpha, problem.flow.beta].into_iter())
+        .numbers(
+            "incidence",
+            [problem.flow.alpha, problem.flow.beta].into_iter(),
+        )
         .numbers("semichord", [problem.semichord].into_iter())
-        .numbers("moment point", problem.moment_point.iter().copied().collect::<Vec<_>>().into_iter())
+        .numbers(
+            "moment point",
+            problem
+                .moment_point
+                .iter()
+                .copied()
+                .collect::<Vec<_>>()
+                .into_iter(),
+        )
         .field("wake direction", direction)
         .indices("body lines", lines.into_iter());
     for chain in problem.trailing_edges {
@@ -108,8 +123,14 @@ pub(crate) fn key(file: &CaseFile, problem: &Problem<'_>) -> Key {
             fladder_mesh::Frame::Inertial => b"inertial",
             fladder_mesh::Frame::Body => b"body",
         };
-        let shape: Vec<f64> = mode.displacement.iter().flat_map(|u| [u.x, u.y, u.z]).collect();
-        builder = builder.field("frame", frame).numbers("mode", shape.into_iter());
+        let shape: Vec<f64> = mode
+            .displacement
+            .iter()
+            .flat_map(|u| [u.x, u.y, u.z])
+            .collect();
+        builder = builder
+            .field("frame", frame)
+            .numbers("mode", shape.into_iter());
     }
     builder.finish()
 }
@@ -120,7 +141,11 @@ pub(crate) fn cached(cache: &Cache, console: &Console, key: Key) -> Option<OwnFo
     if let Some(warning) = loaded.warning {
         console.warn(warning);
     }
-    loaded.value.map(|stored| OwnForces { key, origin: Origin::Cache, stored })
+    loaded.value.map(|stored| OwnForces {
+        key,
+        origin: Origin::Cache,
+        stored,
+    })
 }
 
 /// Forces from the cache or computed and stored.
@@ -162,7 +187,11 @@ pub(crate) fn obtain(
     if let Some(warning) = cache.publish(&key, &stored) {
         console.warn(warning);
     }
-    Ok(OwnForces { key, origin: Origin::Computed(start.elapsed()), stored })
+    Ok(OwnForces {
+        key,
+        origin: Origin::Computed(start.elapsed()),
+        stored,
+    })
 }
 
 fn refuse_too_large(file: &CaseFile, plan: &Plan) -> Result<(), Failure> {
@@ -173,7 +202,11 @@ fn refuse_too_large(file: &CaseFile, plan: &Plan) -> Result<(), Failure> {
                 bytes_in_words(plan.memory_bytes),
                 bytes_in_words(usable)
             ),
-            format!("{}: {} triangles", file.places.of("mesh.file"), plan.sizes.triangles),
+            format!(
+                "{}: {} triangles",
+                file.places.of("mesh.file"),
+                plan.sizes.triangles
+            ),
             "the system would kill the program half-way",
             "take a coarser mesh, or a machine with more memory",
         )),
@@ -212,7 +245,9 @@ pub(crate) fn samples(
     points
         .par_iter()
         .map(|[g, k]| {
-            let q = transfer.q(c64::new(*g, *k)).map_err(|error| not_evaluated(&error))?;
+            let q = transfer
+                .q(c64::new(*g, *k))
+                .map_err(|error| not_evaluated(&error))?;
             Ok(Sample::new(*g, *k, &q))
         })
         .collect()
@@ -227,14 +262,22 @@ fn not_evaluated(error: &LaplaceError) -> Failure {
             "Q has no value there",
             "take a point beside it",
         ),
-        _ => Failure::input(error.to_string(), place, "Q has no value there", "take another point"),
+        _ => Failure::input(
+            error.to_string(),
+            place,
+            "Q has no value there",
+            "take another point",
+        ),
     }
 }
 
 /// Points of the grid that are computed: those on the branch cut are not.
 pub(crate) fn grid(file: &CaseFile) -> Vec<[f64; 2]> {
     let gaf = &file.case.gaf;
-    let all = gaf.g.iter().flat_map(|g| gaf.k.iter().map(move |k| [*g, *k]));
+    let all = gaf
+        .g
+        .iter()
+        .flat_map(|g| gaf.k.iter().map(move |k| [*g, *k]));
     all.filter(|[g, k]| *k > 0.0 || *g >= 0.0).collect()
 }
 
@@ -252,7 +295,11 @@ pub(crate) fn document(
         alpha_deg: forces.alpha_deg,
         beta_deg: forces.beta_deg,
         modes: aircraft.mode_names(),
-        frames: aircraft.modes.iter().map(|mode| Frame::from(mode.frame)).collect(),
+        frames: aircraft
+            .modes
+            .iter()
+            .map(|mode| Frame::from(mode.frame))
+            .collect(),
         steady: steady.iter().copied().map(Some).collect(),
         points,
     }

@@ -25,10 +25,19 @@ impl StructureData {
     /// # Errors
     /// Missing or unreadable files, impossible or missing mass properties.
     pub(crate) fn read(file: &CaseFile) -> Result<Self, Failure> {
-        let Some(given) = &file.case.structure else { return Ok(Self::default()) };
+        let Some(given) = &file.case.structure else {
+            return Ok(Self::default());
+        };
         let Some(path) = &given.file else {
-            let body = given.rigid_body.as_ref().map(|body| stated_body(file, body)).transpose()?;
-            return Ok(Self { body, ..Self::default() });
+            let body = given
+                .rigid_body
+                .as_ref()
+                .map(|body| stated_body(file, body))
+                .transpose()?;
+            return Ok(Self {
+                body,
+                ..Self::default()
+            });
         };
         let settings = settings(file, given, path)?;
         let place = || format!("{}: {}", file.places.of("structure.file"), path.display());
@@ -54,14 +63,21 @@ impl StructureData {
             (None, _) => None,
         };
         let frequencies = model.elastic.iter().map(|mode| mode.omega).collect();
-        Ok(Self { model: Some(model), body, frequencies })
+        Ok(Self {
+            model: Some(model),
+            body,
+            frequencies,
+        })
     }
 
     /// Names of rigid and elastic modes, in order.
     pub(crate) fn mode_names(&self) -> Vec<String> {
         let rigid = self.body.iter().flat_map(|_| stability::RIGID_NAMES);
         let elastic = self.model.iter().flat_map(|model| &model.elastic);
-        rigid.map(str::to_owned).chain(elastic.map(|mode| mode.name.clone())).collect()
+        rigid
+            .map(str::to_owned)
+            .chain(elastic.map(|mode| mode.name.clone()))
+            .collect()
     }
 }
 
@@ -74,8 +90,14 @@ fn settings(
     let body = given.rigid_body.as_ref();
     Ok(modal::StructureSettings {
         file: file.existing("structure.file", path)?,
-        geometry: geometry.map(|path| file.existing("structure.geometry", path)).transpose()?,
-        format: given.format.as_deref().map(|name| format_named(file, name)).transpose()?,
+        geometry: geometry
+            .map(|path| file.existing("structure.geometry", path))
+            .transpose()?,
+        format: given
+            .format
+            .as_deref()
+            .map(|name| format_named(file, name))
+            .transpose()?,
         units: match given.units {
             case::Units::MetreKilogram => modal::Units::MetreKilogram,
             case::Units::MillimetreTonne => modal::Units::MillimetreTonne,
@@ -107,7 +129,9 @@ fn format_named(file: &CaseFile, name: &str) -> Result<modal::Format, Failure> {
 }
 
 fn axes(file: &CaseFile, given: &case::Structure) -> Result<modal::Axes, Failure> {
-    let Some([x, y, z]) = &given.axes else { return Ok(modal::Axes::default()) };
+    let Some([x, y, z]) = &given.axes else {
+        return Ok(modal::Axes::default());
+    };
     modal::Axes::from_names([x, y, z]).map_err(|error| {
         Failure::input(
             error.to_string(),
@@ -119,15 +143,22 @@ fn axes(file: &CaseFile, given: &case::Structure) -> Result<modal::Axes, Failure
 }
 
 fn inertia(given: &case::Inertia) -> modal::Inertia {
-    modal::Inertia { xx: given.xx, yy: given.yy, zz: given.zz, xz: given.xz }
+    modal::Inertia {
+        xx: given.xx,
+        yy: given.yy,
+        zz: given.zz,
+        xz: given.xz,
+    }
 }
 
 /// Mass properties given in full, which the case has been checked for.
 fn stated_body(file: &CaseFile, given: &case::RigidBody) -> Result<modal::RigidBody, Failure> {
     match (given.mass, given.cg, &given.inertia) {
-        (Some(mass), Some(cg), Some(moments)) => {
-            Ok(modal::RigidBody { mass, cg: Vec3::from(cg), inertia: inertia(moments) })
-        }
+        (Some(mass), Some(cg), Some(moments)) => Ok(modal::RigidBody {
+            mass,
+            cg: Vec3::from(cg),
+            inertia: inertia(moments),
+        }),
         _ => Err(Failure::input(
             "[structure.rigid_body] lacks mass, cg or inertia",
             file.places.of("structure.rigid_body"),
@@ -188,9 +219,9 @@ pub(crate) fn system(
         )
         .map_err(refused(key))?;
         return match &structure.body {
-            Some(body) => {
-                system.with_rigid_body_checked(stability_body(body)).map_err(refused(key))
-            }
+            Some(body) => system
+                .with_rigid_body_checked(stability_body(body))
+                .map_err(refused(key)),
             None => Ok(system),
         };
     }
@@ -207,7 +238,9 @@ pub(crate) fn system(
 }
 
 fn matrix(rows: &[Vec<f64>]) -> Mat<f64> {
-    Mat::from_fn(rows.len(), rows.first().map_or(0, Vec::len), |i, j| rows[i][j])
+    Mat::from_fn(rows.len(), rows.first().map_or(0, Vec::len), |i, j| {
+        rows[i][j]
+    })
 }
 
 /// One coefficient a mode, zero for the rigid ones.
@@ -224,7 +257,10 @@ fn damping(
         Some(OneOrMany::Many(list)) if list.len() == elastic => values.extend(list),
         Some(OneOrMany::Many(list)) => {
             return Err(Failure::input(
-                format!("`structure.damping` has {} values for {elastic} elastic modes", list.len()),
+                format!(
+                    "`structure.damping` has {} values for {elastic} elastic modes",
+                    list.len()
+                ),
                 file.places.of("structure.damping"),
                 "each elastic mode needs its own coefficient",
                 "give one number for all modes, or one for each",

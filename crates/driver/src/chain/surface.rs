@@ -108,8 +108,11 @@ impl Surface {
     /// # Errors
     /// All such faults in one message.
     pub(crate) fn without_errors(self) -> Result<Self, Failure> {
-        let errors: Vec<&Fault> =
-            self.faults.iter().filter(|fault| fault.severity == Severity::Error).collect();
+        let errors: Vec<&Fault> = self
+            .faults
+            .iter()
+            .filter(|fault| fault.severity == Severity::Error)
+            .collect();
         if errors.is_empty() {
             return Ok(self);
         }
@@ -126,7 +129,11 @@ pub(crate) fn refusal(file: &Path, errors: &[&Fault]) -> Failure {
     };
     let places = |fault: &Fault| {
         let more = fault.elements.len().saturating_sub(fault.places.len());
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let more = if more > 0 {
+            format!(" and {more} more")
+        } else {
+            String::new()
+        };
         format!("{}{more}", fault.places.join(", "))
     };
     let place = join(&|fault| format!("{}: {}", file.display(), places(fault)));
@@ -140,16 +147,28 @@ pub(crate) fn refusal(file: &Path, errors: &[&Fault]) -> Failure {
 
 fn unreadable(file: &Path, error: &ReadError) -> Failure {
     let (place, what, remedy) = match error {
-        ReadError::Malformed { path, place, what, remedy } => {
-            (format!("{}, {place}", path.display()), what.clone(), remedy.clone())
-        }
+        ReadError::Malformed {
+            path,
+            place,
+            what,
+            remedy,
+        } => (
+            format!("{}, {place}", path.display()),
+            what.clone(),
+            remedy.clone(),
+        ),
         other => (
             file.display().to_string(),
             other.to_string(),
             "check the file and your right to read it".to_owned(),
         ),
     };
-    Failure::input(what, place, "without a whole surface nothing can be computed", remedy)
+    Failure::input(
+        what,
+        place,
+        "without a whole surface nothing can be computed",
+        remedy,
+    )
 }
 
 fn find_trailing_edges(
@@ -190,7 +209,11 @@ fn named_lines(mesh: &TriMesh, wanted: &Wanted) -> Result<Vec<[u32; 2]>, Failure
     let mut edges = Vec::new();
     for name in &wanted.wake.body_lines {
         let Some(group) = mesh.curve(name) else {
-            let there: Vec<&str> = mesh.curves.iter().map(|group| group.name.as_str()).collect();
+            let there: Vec<&str> = mesh
+                .curves
+                .iter()
+                .map(|group| group.name.as_str())
+                .collect();
             let what = format!("the mesh has no curve group `{name}`; it has {there:?}");
             return Err(unknown_groups(&what, &wanted.lines_place));
         };

@@ -18,14 +18,16 @@ use fladder_stability::{
 /// The case gives none.
 pub(crate) fn density(file: &CaseFile) -> Result<f64, Failure> {
     let flow = &file.case.flow;
-    flow.density.or_else(|| flow.altitude.map(atmosphere::density)).ok_or_else(|| {
-        Failure::input(
-            "neither `flow.density` nor `flow.altitude` is given",
-            file.places.of("flow.density"),
-            "the dynamic pressure of a speed needs the density",
-            "add density = 1.225 (kg/m³) or altitude = 0.0 (m) to [flow]",
-        )
-    })
+    flow.density
+        .or_else(|| flow.altitude.map(atmosphere::density))
+        .ok_or_else(|| {
+            Failure::input(
+                "neither `flow.density` nor `flow.altitude` is given",
+                file.places.of("flow.density"),
+                "the dynamic pressure of a speed needs the density",
+                "add density = 1.225 (kg/m³) or altitude = 0.0 (m) to [flow]",
+            )
+        })
 }
 
 /// Speeds of the case, m/s.
@@ -33,7 +35,11 @@ pub(crate) fn density(file: &CaseFile) -> Result<f64, Failure> {
 /// # Errors
 /// The case has no [stability].
 pub(crate) fn speeds(file: &CaseFile) -> Result<Vec<f64>, Failure> {
-    let swept = file.case.stability.as_ref().and_then(|swept| swept.speed.as_ref());
+    let swept = file
+        .case
+        .stability
+        .as_ref()
+        .and_then(|swept| swept.speed.as_ref());
     swept.map(case::Speeds::values).ok_or_else(|| {
         Failure::input(
             "the case has no [stability] with speeds",
@@ -69,7 +75,10 @@ pub(crate) fn run(
             ..OperatingPoint::new(*speed, density)
         })
         .collect();
-    let exact = forces.transfer.as_ref().map(|transfer| ExactForces { transfer, fit: &fit });
+    let exact = forces.transfer.as_ref().map(|transfer| ExactForces {
+        transfer,
+        fit: &fit,
+    });
     let smooth: &dyn Aerodynamics = exact.as_ref().map_or(&fit, |exact| exact);
     let sweep = Sweep {
         structure: &system,
@@ -96,12 +105,19 @@ fn complete_system(
 ) -> Result<System, Failure> {
     let names = forces.table.modes();
     let system = system(file, structure, names)?;
-    let Some(flight) = &file.case.flight else { return Ok(system) };
-    let heave = names.iter().position(|name| name == stability::RIGID_NAMES[2]);
+    let Some(flight) = &file.case.flight else {
+        return Ok(system);
+    };
+    let heave = names
+        .iter()
+        .position(|name| name == stability::RIGID_NAMES[2]);
     let heave_slope = heave.map_or(0.0, |z| fit.slope_at_origin(z, z));
     let steady = forces.table.steady();
     let is_elastic = |name: &String| !stability::RIGID_NAMES.contains(&name.as_str());
-    let unknown = names.iter().zip(steady).filter(|(name, force)| is_elastic(name) && force.is_none());
+    let unknown = names
+        .iter()
+        .zip(steady)
+        .filter(|(name, force)| is_elastic(name) && force.is_none());
     let unknown = unknown.count();
     if flight.speed_derivative && unknown > 0 {
         console.say(format!(
@@ -110,7 +126,12 @@ fn complete_system(
         ));
     }
     system
-        .with_flight(stability_flight(flight), forces.table.semichord(), heave_slope, steady)
+        .with_flight(
+            stability_flight(flight),
+            forces.table.semichord(),
+            heave_slope,
+            steady,
+        )
         .map_err(|error| unfit(file, &error.to_string()))
 }
 

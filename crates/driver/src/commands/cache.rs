@@ -20,16 +20,20 @@ pub(crate) fn cache(session: &Session, action: &CacheAction) -> Result<(), Failu
     | CacheAction::Prune { case, .. }) = action;
     let folder = folder(session, case.as_deref())?;
     let cache = Cache::existing(&folder);
-    session.console.answer(format!("cache {}", folder.display()));
+    session
+        .console
+        .answer(format!("cache {}", folder.display()));
     match action {
         CacheAction::List { .. } => list(session, &cache.list()?),
         CacheAction::Verify { .. } => return verify(session, &folder, &cache.list()?),
         CacheAction::Prune { older_than, .. } => {
-            let age = older_than.map(|days| Duration::from_secs(u64::from(days) * SECONDS_PER_DAY));
+            let age =
+                older_than.map(|days| Duration::from_secs(u64::from(days) * SECONDS_PER_DAY));
             let (files, bytes) = cache.prune::<StoredForces>(age)?;
-            session
-                .console
-                .answer(format!("  removed {files} files, {}", bytes_in_words(bytes)));
+            session.console.answer(format!(
+                "  removed {files} files, {}",
+                bytes_in_words(bytes)
+            ));
         }
     }
     Ok(())
@@ -62,10 +66,14 @@ fn list(session: &Session, entries: &[Listed<StoredForces>]) {
         ("beta", Align::Right),
     ]);
     for entry in entries {
-        let name = || entry.path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        let name = || {
+            entry
+                .path
+                .file_name()
+                .map_or_else(String::new, |n| n.to_string_lossy().into_owned())
+        };
         let key = entry.key.map_or_else(name, |key| key.short());
-        let mut row =
-            vec![key, bytes_in_words(entry.size), report::utc(entry.modified)];
+        let mut row = vec![key, bytes_in_words(entry.size), report::utc(entry.modified)];
         match &entry.content {
             Ok(stored) => row.extend([
                 stored.solution.transfer.n_modes().to_string(),
@@ -98,7 +106,9 @@ fn verify(
         }
     }
     if bad.is_empty() {
-        session.console.answer(format!("  {} entries, all good", entries.len()));
+        session
+            .console
+            .answer(format!("  {} entries, all good", entries.len()));
         return Ok(());
     }
     let mut failure = Failure::input(

@@ -59,9 +59,17 @@ struct Estimate {
     seconds: f64,
 }
 
-pub(crate) fn check(session: &Session, input: &Path, json: Option<&Path>) -> Result<(), Failure> {
+pub(crate) fn check(
+    session: &Session,
+    input: &Path,
+    json: Option<&Path>,
+) -> Result<(), Failure> {
     let is_case = input.is_dir() || input.extension().is_some_and(|e| e == "toml");
-    let case = if is_case { Some(session.case(input)?) } else { None };
+    let case = if is_case {
+        Some(session.case(input)?)
+    } else {
+        None
+    };
     let wanted = match &case {
         Some(file) if file.case.mesh.is_none() => return check_given_forces(session, file),
         Some(file) => Wanted::by(file)?,
@@ -80,8 +88,11 @@ pub(crate) fn check(session: &Session, input: &Path, json: Option<&Path>) -> Res
     // What comes after is only looked at on a surface that can be computed.
     let later = look_further(session, case.as_ref(), &mut surface, &mut findings);
     findings.faults = surface.faults.iter().map(Finding::of).collect();
-    let errors: Vec<&Fault> =
-        surface.faults.iter().filter(|fault| fault.severity == Severity::Error).collect();
+    let errors: Vec<&Fault> = surface
+        .faults
+        .iter()
+        .filter(|fault| fault.severity == Severity::Error)
+        .collect();
     findings.ok = errors.is_empty() && later.is_ok();
     if let Some(json) = json {
         session.write_json(json, &findings)?;
@@ -102,7 +113,11 @@ fn look_further(
 ) -> Result<(), Failure> {
     let console = &session.console;
     report::surface(console, surface);
-    if surface.faults.iter().any(|fault| fault.severity == Severity::Error) {
+    if surface
+        .faults
+        .iter()
+        .any(|fault| fault.severity == Severity::Error)
+    {
         return Ok(());
     }
     let plan = match case {

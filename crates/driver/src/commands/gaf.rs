@@ -33,10 +33,16 @@ pub(crate) fn gaf(
     if json.is_none() && at.is_empty() {
         return Ok(());
     }
-    let points = if at.is_empty() { own_forces::grid(&file) } else { at.to_vec() };
+    let points = if at.is_empty() {
+        own_forces::grid(&file)
+    } else {
+        at.to_vec()
+    };
     let samples = own_forces::samples(&own.stored, &points)?;
     if !at.is_empty() {
-        samples.iter().for_each(|sample| report::sample(console, &aircraft.mode_names(), sample));
+        samples
+            .iter()
+            .for_each(|sample| report::sample(console, &aircraft.mode_names(), sample));
     }
     match json {
         Some(json) => {

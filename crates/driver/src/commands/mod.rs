@@ -41,7 +41,10 @@ impl Session {
     }
 
     fn cache_folder(&self, file: &CaseFile) -> PathBuf {
-        self.common.cache.clone().unwrap_or_else(|| file.default_cache())
+        self.common
+            .cache
+            .clone()
+            .unwrap_or_else(|| file.default_cache())
     }
 
     fn open_cache(&self, file: &CaseFile) -> Cache {
@@ -53,7 +56,10 @@ impl Session {
     }
 
     fn results_folder(&self, file: &CaseFile) -> PathBuf {
-        self.common.out.clone().unwrap_or_else(|| Path::new("results").join(&file.name))
+        self.common
+            .out
+            .clone()
+            .unwrap_or_else(|| Path::new("results").join(&file.name))
     }
 
     fn write_json<T: Serialize>(&self, path: &Path, value: &T) -> Result<(), Failure> {

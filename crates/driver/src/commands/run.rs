@@ -48,8 +48,16 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
     };
     write("roots.csv", &report::roots_csv(&result.methods))?;
     let conditions = report::conditions(&file, &speeds, density);
-    let title = if file.case.title.is_empty() { &file.name } else { &file.case.title };
-    let subject = Subject { title, conditions: &conditions, methods: &result.methods };
+    let title = if file.case.title.is_empty() {
+        &file.name
+    } else {
+        &file.case.title
+    };
+    let subject = Subject {
+        title,
+        conditions: &conditions,
+        methods: &result.methods,
+    };
     write("root_locus.svg", &plot::root_locus(&subject))?;
     write("vgf.svg", &plot::flutter_diagram(&subject))?;
     report::roots(console, &result.methods, &speeds);

@@ -136,7 +136,9 @@ fn draw_branch(
     if points.is_empty() {
         return points;
     }
-    svg.polyline(&points, style.colour, 1.8);
+    for run in points.chunk_by(|a, b| panel.reaches(*a) && panel.reaches(*b)) {
+        svg.polyline(run, style.colour, 1.8);
+    }
     for point in points.iter().step_by(marker_stride(points.len())) {
         style.mark(svg, *point, 3.2);
     }

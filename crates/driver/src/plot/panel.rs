@@ -31,6 +31,13 @@ impl Panel<'_> {
         self.x.contains(x) && self.y.contains(y)
     }
 
+    /// Whether a pixel is on the diagram or within its height of it: lines are
+    /// drawn up to there, and not to what lies far outside.
+    pub(super) fn reaches(&self, [_, y]: [f64; 2]) -> bool {
+        let [_, top, _, height] = self.area;
+        (top - height..=top + 2.0 * height).contains(&y)
+    }
+
     /// Grid, ticks, labels and the lines at zero.
     pub(super) fn draw_axes(&self, svg: &mut Svg) {
         let [left, top, width, height] = self.area;

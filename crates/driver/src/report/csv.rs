@@ -9,7 +9,11 @@ const HEADER: &str = "method,branch,kind,speed_m_s,g,k,sigma_1_s,omega_rad_s,fre
 /// One line a root, branch by branch; undefined values are empty.
 pub(crate) fn roots_csv(methods: &Methods) -> String {
     let mut text = format!("{HEADER}\n");
-    let named = [("p2", &methods.p2), ("polished", &methods.polished), ("pk", &methods.pk)];
+    let named = [
+        ("p2", &methods.p2),
+        ("polished", &methods.polished),
+        ("pk", &methods.pk),
+    ];
     for (name, result) in named {
         if let Some(result) = result {
             add(&mut text, name, result);
@@ -26,7 +30,8 @@ fn add(text: &mut String, method: &str, result: &MethodResult) {
         };
         let name = quoted(&branch.name);
         for i in 0..branch.speed.len() {
-            let optional = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
+            let optional =
+                |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
@@ -72,9 +77,18 @@ mod tests {
             structural_damping: vec![None],
             ..Branch::default()
         };
-        let result = MethodResult { branches: vec![branch], ..MethodResult::default() };
-        let methods = Methods { pk: Some(result), ..Methods::default() };
+        let result = MethodResult {
+            branches: vec![branch],
+            ..MethodResult::default()
+        };
+        let methods = Methods {
+            pk: Some(result),
+            ..Methods::default()
+        };
         let text = roots_csv(&methods);
-        assert_eq!(text.lines().nth(1), Some("pk,\"a,\"\"b\"\"\",elastic,10,-0.1,0,-2,0,0,1,"));
+        assert_eq!(
+            text.lines().nth(1),
+            Some("pk,\"a,\"\"b\"\"\",elastic,10,-0.1,0,-2,0,0,1,")
+        );
     }
 }

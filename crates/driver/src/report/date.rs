@@ -4,10 +4,16 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 /// `2026-05-09 07:29`, universal time.
 pub(crate) fn utc(time: SystemTime) -> String {
-    let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let seconds = time
+        .duration_since(UNIX_EPOCH)
+        .map_or(0, |since| since.as_secs());
     let (day, second) = (seconds / 86_400, seconds % 86_400);
     let [year, month, day] = civil(day);
-    format!("{year:04}-{month:02}-{day:02} {:02}:{:02}", second / 3600, second % 3600 / 60)
+    format!(
+        "{year:04}-{month:02}-{day:02} {:02}:{:02}",
+        second / 3600,
+        second % 3600 / 60
+    )
 }
 
 /// Year, month and day of a day counted from 1 January 1970, in the Gregorian
@@ -21,7 +27,11 @@ fn civil(day: u64) -> [u64; 3] {
     let of_year = day - (365 * year + year / 4 - year / 100);
     let march_month = (5 * of_year + 2) / 153;
     let of_month = of_year - (153 * march_month + 2) / 5 + 1;
-    let month = if march_month < 10 { march_month + 3 } else { march_month - 9 };
+    let month = if march_month < 10 {
+        march_month + 3
+    } else {
+        march_month - 9
+    };
     [400 * era + year + u64::from(month <= 2), month, of_month]
 }
 

@@ -5,6 +5,7 @@ use crate::chain::aircraft::Aircraft;
 use crate::chain::memory::bytes_in_words;
 use crate::chain::own_forces::{Origin, OwnForces};
 use crate::chain::sweep::density;
+use crate::figures::fixed;
 use crate::gaf_json::Sample;
 use crate::terminal::{Align, Console, Table};
 use fladder_bem::SteadyState;
@@ -45,30 +46,49 @@ fn steady_loads(console: &Console, file: &CaseFile, aircraft: &Aircraft, steady:
     let [_, side, _] = steady.loads.force;
     let [roll, pitch, yaw] = steady.loads.moment;
     console.say(format!(
-        "steady flow at alpha {}°, beta {}°: lift {:.5} m² by pressure, {:.5} m² by wake jump \
-         (times dynamic pressure)",
-        flow.alpha_deg, flow.beta_deg, steady.lift_by_pressure, steady.lift_by_wake_jump
+        "steady flow at alpha {}°, beta {}°: lift {} m² by pressure, {} m² by wake jump (times \
+         dynamic pressure)",
+        flow.alpha_deg,
+        flow.beta_deg,
+        fixed(steady.lift_by_pressure, 5),
+        fixed(steady.lift_by_wake_jump, 5)
     ));
     if let Some(area) = file.case.reference.area {
-        console.say(format!("  lift coefficient {:.4}", steady.lift_by_pressure / area));
+        console.say(format!(
+            "  lift coefficient {}",
+            fixed(steady.lift_by_pressure / area, 4)
+        ));
     }
     console.say(format!(
-        "  flight-mechanics signs: side force to starboard {side:.5} m²; moments about the moment \
-         point: roll (starboard wing down) {:.5}, pitch (nose up) {pitch:.5}, yaw (nose to \
-         starboard) {:.5} m³",
-        0.0 - roll,
-        0.0 - yaw
+        "  flight-mechanics signs: side force to starboard {} m²; moments about the moment point: \
+         roll (starboard wing down) {}, pitch (nose up) {}, yaw (nose to starboard) {} m³",
+        fixed(side, 5),
+        fixed(-roll, 5),
+        fixed(pitch, 5),
+        fixed(-yaw, 5)
     ));
     let (pressure, triangle) = steady.lowest_pressure;
-    console.say(format!("  lowest pressure coefficient {pressure:.3} on triangle {triangle}"));
+    console.say(format!(
+        "  lowest pressure coefficient {pressure:.3} on triangle {triangle}"
+    ));
     level_flight(console, file, aircraft, steady.lift_by_pressure);
 }
 
 /// Speed at which the lift carries the weight.
 fn level_flight(console: &Console, file: &CaseFile, aircraft: &Aircraft, lift: f64) {
-    let (Some(body), Ok(density)) = (&aircraft.structure.body, density(file)) else { return };
-    let gravity = file.case.flight.as_ref().map_or(STANDARD_GRAVITY, |flight| flight.gravity);
-    let climb = file.case.flight.as_ref().map_or(0.0, |flight| flight.climb_deg);
+    let (Some(body), Ok(density)) = (&aircraft.structure.body, density(file)) else {
+        return;
+    };
+    let gravity = file
+        .case
+        .flight
+        .as_ref()
+        .map_or(STANDARD_GRAVITY, |flight| flight.gravity);
+    let climb = file
+        .case
+        .flight
+        .as_ref()
+        .map_or(0.0, |flight| flight.climb_deg);
     let weight = body.mass * gravity * climb.to_radians().cos();
     if lift > 0.0 {
         let speed = (2.0 * weight / (density * lift)).sqrt();
@@ -98,10 +118,14 @@ pub(crate) fn wake_jumps(console: &Console, steady: &SteadyState) {
         let count = edge.positions.len();
         let rows = count.min(PRINTED_STATIONS);
         for row in 0..rows {
-            let station = if rows < 2 { 0 } else { row * (count - 1) / (rows - 1) };
+            let station = if rows < 2 {
+                0
+            } else {
+                row * (count - 1) / (rows - 1)
+            };
             let [x, y, z] = edge.positions[station];
-            let mut cells: Vec<String> = [x, y, z].iter().map(|c| format!("{c:.4}")).collect();
-            cells.push(format!("{:.6}", edge.jumps[station]));
+            let mut cells: Vec<String> = [x, y, z].iter().map(|c| fixed(*c, 4)).collect();
+            cells.push(fixed(edge.jumps[station], 6));
             table.row(cells);
         }
         console.say(table.text());
@@ -122,9 +146,16 @@ fn ends_in_words(on_body: [bool; 2]) -> &'static str {
 
 /// One sample of $Q$, where it is small enough to read.
 pub(crate) fn sample(console: &Console, modes: &[String], sample: &Sample) {
-    console.say(format!("Q at g = {}, k = {} [m² for unit-metre modes]", sample.g, sample.k));
+    console.say(format!(
+        "Q at g = {}, k = {} [m² for unit-metre modes]",
+        sample.g, sample.k
+    ));
     if modes.len() > LARGEST_PRINTED {
-        console.say(format!("  {} × {} entries; --json writes them", modes.len(), modes.len()));
+        console.say(format!(
+            "  {} × {} entries; --json writes them",
+            modes.len(),
+            modes.len()
+        ));
         return;
     }
     let mut columns = vec![("force on", Align::Left)];

@@ -10,10 +10,20 @@ use std::f64::consts::{LN_2, TAU};
 /// not the same crossing.
 const SAME_CROSSING: f64 = 0.05;
 
+/// Strongly decaying motions with less reduced frequency than this are
+/// aperiodic: they lie on the branch cut of the forces, where digits mean
+/// little.
+const NEAR_CUT: f64 = 1e-3;
+/// Damping ratio above which a period has no meaning.
+const NEARLY_ONE: f64 = 0.99;
+
 /// What a sweep was made at, on one line.
 pub(crate) fn conditions(file: &CaseFile, speeds: &[f64], density: f64) -> String {
     let flow = &file.case.flow;
-    let (first, last) = (speeds.first().unwrap_or(&0.0), speeds.last().unwrap_or(&0.0));
+    let (first, last) = (
+        speeds.first().unwrap_or(&0.0),
+        speeds.last().unwrap_or(&0.0),
+    );
     format!(
         "density {density:.4} kg/m³, {first}–{last} m/s, semichord {} m, alpha {}°, M {}",
         file.case.reference.semichord, flow.alpha_deg, flow.mach
@@ -22,13 +32,21 @@ pub(crate) fn conditions(file: &CaseFile, speeds: &[f64], density: f64) -> Strin
 
 /// Crossings, agreement of the methods, rigid roots, and the verdict.
 pub(crate) fn roots(console: &Console, methods: &Methods, speeds: &[f64]) {
-    let best = methods.polished.as_ref().or(methods.p2.as_ref()).or(methods.pk.as_ref());
-    let (Some(best), [first, .., last] | [first @ last]) = (best, speeds) else { return };
+    let best = methods
+        .polished
+        .as_ref()
+        .or(methods.p2.as_ref())
+        .or(methods.pk.as_ref());
+    let (Some(best), [first, .., last] | [first @ last]) = (best, speeds) else {
+        return;
+    };
     crossings(console, methods, best);
     rigid_roots(console, best);
     completeness(console, best);
     console.say("");
-    verdict(best, *first, *last).iter().for_each(|line| console.say(line));
+    verdict(best, *first, *last)
+        .iter()
+        .for_each(|line| console.say(line));
 }
 
 fn crossings(console: &Console, methods: &Methods, best: &MethodResult) {
@@ -46,13 +64,18 @@ fn crossings(console: &Console, methods: &Methods, best: &MethodResult) {
     ]);
     let beside = |result: &Option<MethodResult>, crossing: &Crossing, back: bool| {
         let result = result.as_ref()?;
-        let list = if back { &result.restabilised } else { &result.flutter };
+        let list = if back {
+            &result.restabilised
+        } else {
+            &result.flutter
+        };
         counterpart(list, crossing)
     };
     let mut add = |word: &str, crossing: &Crossing, back: bool| {
         let p2 = beside(&methods.p2, crossing, back);
         let pk = beside(&methods.pk, crossing, back);
-        let speed = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.3}"));
+        let speed =
+            |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.3}"));
         let difference = p2.zip(pk).map_or_else(
             || "–".to_owned(),
             |(p2, pk)| format!("{:+.3} %", 100.0 * (pk - p2) / p2),
@@ -70,8 +93,12 @@ fn crossings(console: &Console, methods: &Methods, best: &MethodResult) {
             difference,
         ]);
     };
-    best.flutter.iter().for_each(|crossing| add("flutter", crossing, false));
-    best.restabilised.iter().for_each(|crossing| add("stable again", crossing, true));
+    best.flutter
+        .iter()
+        .for_each(|crossing| add("flutter", crossing, false));
+    best.restabilised
+        .iter()
+        .for_each(|crossing| add("stable again", crossing, true));
     for divergence in &best.divergence {
         table.row([
             "divergence".to_owned(),
@@ -93,7 +120,9 @@ fn counterpart(list: &[Crossing], wanted: &Crossing) -> Option<f64> {
         let scale = wanted.frequency_hz.max(f64::MIN_POSITIVE);
         speed.max((other.frequency_hz - wanted.frequency_hz).abs() / scale)
     };
-    let nearest = list.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    let nearest = list
+        .iter()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
     (distance(nearest) <= SAME_CROSSING).then_some(nearest.speed)
 }
 
@@ -113,7 +142,11 @@ fn rigid_roots(console: &Console, best: &MethodResult) {
         ("damping ratio", Align::Right),
         ("amplitude", Align::Left),
     ]);
-    for branch in best.branches.iter().filter(|branch| branch.kind == Kind::Rigid) {
+    for branch in best
+        .branches
+        .iter()
+        .filter(|branch| branch.kind == Kind::Rigid)
+    {
         let last = branch.speed.len().saturating_sub(1);
         let mut ends = vec![0, last];
         ends.dedup();
@@ -128,9 +161,21 @@ fn rigid_roots(console: &Console, best: &MethodResult) {
 
 fn rigid_row(branch: &Branch, at: usize) -> [String; 5] {
     let (sigma, omega) = (branch.sigma[at], branch.omega[at]);
-    let period = if omega > 0.0 { format!("{:.3}", TAU / omega) } else { "–".to_owned() };
+    let is_overdamped = branch.damping_ratio[at].is_some_and(|ratio| ratio > NEARLY_ONE);
+    let is_aperiodic = branch.k[at] < NEAR_CUT && is_overdamped;
+    let period = match omega {
+        _ if is_aperiodic => "–".to_owned(),
+        0.0 => "–".to_owned(),
+        _ => three_digits(TAU / omega),
+    };
     let ratio = branch.damping_ratio[at].map_or_else(|| "–".to_owned(), |r| format!("{r:.4}"));
-    [branch.name.clone(), format!("{:.1}", branch.speed[at]), period, ratio, amplitude(sigma)]
+    [
+        branch.name.clone(),
+        format!("{:.1}", branch.speed[at]),
+        period,
+        ratio,
+        amplitude(sigma),
+    ]
 }
 
 fn amplitude(sigma: f64) -> String {
@@ -142,7 +187,9 @@ fn amplitude(sigma: f64) -> String {
 }
 
 fn completeness(console: &Console, best: &MethodResult) {
-    let Some(complete) = &best.complete else { return };
+    let Some(complete) = &best.complete else {
+        return;
+    };
     let counted = complete.iter().filter(|met| **met).count();
     if counted < complete.len() {
         console.say(format!(
@@ -156,8 +203,16 @@ fn completeness(console: &Console, best: &MethodResult) {
 fn verdict(best: &MethodResult, first: f64, last: f64) -> Vec<String> {
     let mut lines = Vec::new();
     for start in &best.unstable_at_start {
-        let motion = if start.k > 0.0 { "oscillation" } else { "aperiodic motion" };
-        let since = if start.speed > first { "from" } else { "already at the first speed," };
+        let motion = if start.k > 0.0 {
+            "oscillation"
+        } else {
+            "aperiodic motion"
+        };
+        let since = if start.speed > first {
+            "from"
+        } else {
+            "already at the first speed,"
+        };
         lines.push(format!(
             "unstable {since} {} m/s: branch {} ({}), {motion}, g {:+.5}, k {:.4}",
             three_digits(start.speed),
@@ -186,7 +241,10 @@ fn verdict(best: &MethodResult, first: f64, last: f64) -> Vec<String> {
             Kind::Rigid => "a rigid motion becomes aperiodically unstable",
         };
         let speed = three_digits(divergence.speed);
-        lines.push(format!("{word} at {speed} m/s, branch {}", divergence.branch));
+        lines.push(format!(
+            "{word} at {speed} m/s, branch {}",
+            divergence.branch
+        ));
     }
     if lines.is_empty() {
         lines.push(format!("stable from {first:.1} to {last:.1} m/s"));
@@ -213,17 +271,26 @@ mod tests {
 
     #[test]
     fn the_verdict_names_speed_frequency_and_branch() {
-        let result =
-            MethodResult { flutter: vec![crossing(46.41, 56.02)], ..MethodResult::default() };
+        let result = MethodResult {
+            flutter: vec![crossing(46.41, 56.02)],
+            ..MethodResult::default()
+        };
         let lines = verdict(&result, 20.0, 75.0);
-        assert_eq!(lines, ["flutter at 46.4 m/s, 56.0 Hz, k 0.50, branch elastic:5"]);
+        assert_eq!(
+            lines,
+            ["flutter at 46.4 m/s, 56.0 Hz, k 0.50, branch elastic:5"]
+        );
         let stable = verdict(&MethodResult::default(), 20.0, 75.0);
         assert_eq!(stable, ["stable from 20.0 to 75.0 m/s"]);
     }
 
     #[test]
     fn crossings_of_two_methods_meet_by_speed_and_frequency() {
-        let list = [crossing(40.0, 10.0), crossing(46.5, 30.0), crossing(46.6, 56.1)];
+        let list = [
+            crossing(40.0, 10.0),
+            crossing(46.5, 30.0),
+            crossing(46.6, 56.1),
+        ];
         assert_eq!(counterpart(&list, &crossing(46.4, 56.0)), Some(46.6));
         assert_eq!(counterpart(&list, &crossing(60.0, 56.0)), None);
     }

@@ -1,6 +1,7 @@
 //! Masses and modes in words.
 
 use crate::chain::structure::StructureData;
+use crate::figures::fixed;
 use crate::terminal::{Align, Console, Table};
 use fladder_modal::{ModesSummary, RigidBody, TransferReport};
 
@@ -32,9 +33,16 @@ pub(crate) fn structure(console: &Console, data: &StructureData) {
 fn body_in_words(body: &RigidBody) -> String {
     let (cg, inertia) = (body.cg, body.inertia);
     format!(
-        "{:.4} kg, centre of mass ({:.4}, {:.4}, {:.4}) m, Ixx {:.5}, Iyy {:.5}, Izz {:.5}, \
-         ∫xz dm {:.5} kg m²",
-        body.mass, cg.x, cg.y, cg.z, inertia.xx, inertia.yy, inertia.zz, inertia.xz
+        "{:.4} kg, centre of mass ({}, {}, {}) m, Ixx {:.5}, Iyy {:.5}, Izz {:.5}, ∫xz dm {:.5} \
+         kg m²",
+        body.mass,
+        fixed(cg.x, 4),
+        fixed(cg.y, 4),
+        fixed(cg.z, 4),
+        inertia.xx,
+        inertia.yy,
+        inertia.zz,
+        inertia.xz
     )
 }
 
@@ -65,7 +73,10 @@ pub(crate) fn transfer(console: &Console, report: Option<&TransferReport>) {
     }
     console.notes(&report.notes);
     if !report.left_out.is_empty() {
-        console.say(format!("  not on the surface: {}", report.left_out.join(", ")));
+        console.say(format!(
+            "  not on the surface: {}",
+            report.left_out.join(", ")
+        ));
     }
 }
 
@@ -89,7 +100,11 @@ pub(crate) fn modes_summary(console: &Console, summary: &ModesSummary) {
             mode.index.to_string(),
             format!("{:.4}", mode.frequency_hz),
             format!("{:.5}", mode.generalised_mass),
-            if mode.rigid { "rigid".to_owned() } else { String::new() },
+            if mode.rigid {
+                "rigid".to_owned()
+            } else {
+                String::new()
+            },
         ]);
     }
     console.answer(table.text());
@@ -97,7 +112,8 @@ pub(crate) fn modes_summary(console: &Console, summary: &ModesSummary) {
         console.answer(format!("  mass {mass:.5} (units of the file)"));
     }
     if let Some(cg) = summary.cg {
-        console.answer(format!("  centre of mass ({:.5}, {:.5}, {:.5})", cg.x, cg.y, cg.z));
+        let [x, y, z] = [cg.x, cg.y, cg.z].map(|c| fixed(c, 5));
+        console.answer(format!("  centre of mass ({x}, {y}, {z})"));
     }
     if let Some(inertia) = summary.inertia {
         console.answer(format!(

@@ -17,7 +17,10 @@ pub(crate) struct Console {
 
 impl Console {
     pub(crate) fn new(is_quiet: bool) -> Self {
-        Self { is_quiet, failure: RefCell::default() }
+        Self {
+            is_quiet,
+            failure: RefCell::default(),
+        }
     }
 
     pub(crate) fn is_quiet(&self) -> bool {
@@ -51,15 +54,19 @@ impl Console {
 
     /// Remarks, one line each.
     pub(crate) fn notes<'a>(&self, notes: impl IntoIterator<Item = &'a String>) {
-        notes.into_iter().for_each(|note| self.say(format!("  note: {note}")));
+        notes
+            .into_iter()
+            .for_each(|note| self.say(format!("  note: {note}")));
     }
 
     /// Whether everything could be written.
     pub(crate) fn finish(&self) -> Result<(), Failure> {
         match self.failure.borrow_mut().take() {
-            Some(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                Err(Failure::io("write to standard output", Path::new("standard output"), &error))
-            }
+            Some(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::io(
+                "write to standard output",
+                Path::new("standard output"),
+                &error,
+            )),
             _ => Ok(()),
         }
     }

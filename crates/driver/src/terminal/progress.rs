@@ -20,7 +20,8 @@ impl Bar {
             return Self(ProgressBar::hidden());
         }
         let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
-        let style = ProgressStyle::with_template(TEMPLATE).map(|style| style.progress_chars("=> "));
+        let style =
+            ProgressStyle::with_template(TEMPLATE).map(|style| style.progress_chars("=> "));
         if let Ok(style) = style {
             bar.set_style(style);
         }
