@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 use fladder_mesh::shapes::{NacaWing, Tip};
 use fladder_mesh::trailing_edge::{Settings, find_by_shape, find_from_groups};
-use fladder_mesh::{Topology, TriMesh};
+use fladder_mesh::{Topology, TrailingEdge, TriMesh};
 
 /// The edges along which both ends lie at x = |y| tan Λ + c.
 fn true_edges(mesh: &TriMesh, topology: &Topology, wing: &NacaWing) -> BTreeSet<[u32; 2]> {
@@ -31,7 +31,11 @@ fn assert_finds_the_trailing_edge(mesh: &TriMesh, wing: &NacaWing) {
     let topology = Topology::new(mesh);
     let chains = find_by_shape(mesh, &topology, Settings::default());
     let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-    let found: BTreeSet<[u32; 2]> = chains.iter().flat_map(|c| c.edges()).map(sorted).collect();
+    let found: BTreeSet<[u32; 2]> = chains
+        .iter()
+        .flat_map(TrailingEdge::edges)
+        .map(sorted)
+        .collect();
     let expected = true_edges(mesh, &topology, wing);
     let extra: Vec<_> = found.difference(&expected).collect();
     let lost: Vec<_> = expected.difference(&found).collect();
