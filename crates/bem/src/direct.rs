@@ -2,7 +2,8 @@
 //! model. Everything of the wake is summed at every test point before it is tested.
 
 use crate::boundary::ModeFields;
-use crate::galerkin::{Galerkin, POINTS};
+use crate::galerkin::Galerkin;
+use crate::near_field::POINTS;
 use crate::pressure::Functionals;
 use crate::progress::Silent;
 use crate::solve::{Flow, Problem, WakeDirection, lay_out, solve};
@@ -188,5 +189,24 @@ fn double_layer_row_sums_are_minus_one_half() {
         }
         println!("{} triangles: row sums to {worst:.1e}", mesh.triangles.len());
         assert!(worst < 1e-12);
+    }
+}
+
+/// One panel by itself is what it is among all.
+#[test]
+fn a_panel_alone_gives_what_it_gives_in_the_set() {
+    let mesh = fladder_mesh::shapes::icosphere(2);
+    let panels = crate::panels::PanelSet::new(&mesh.vertices, &mesh.triangles);
+    let mut scratch = panels.scratch();
+    let mut d = vec![[0.0; 3]; panels.len()];
+    let mut s = d.clone();
+    for point in [Vec3::new(0.2, 0.1, -0.9), Vec3::new(1.3, -0.2, 0.4), Vec3::zeros()] {
+        panels.doublets_and_sources(point, &mut scratch, &mut d, &mut s);
+        for t in 0..panels.len() {
+            let (one_d, one_s) = panels.one(t, point);
+            for c in 0..3 {
+                assert!((one_d[c] - d[t][c]).abs() < 1e-14 && (one_s[c] - s[t][c]).abs() < 1e-14);
+            }
+        }
     }
 }

@@ -7,23 +7,18 @@
 //! points q of each triangle, (2/3, 1/6, 1/6) and its turns, and tested with the hat
 //! functions: Σ_t A_t/3 Σ_q Nᵢ(q) {…}, divided by the test function's weight.
 //! One point a triangle has a null space on right-angled meshes; collocation at the
-//! vertices loses lift on thin wings.
+//! vertices loses lift on thin wings. Panels near a test triangle are integrated with more
+//! points ([`crate::near_field`]).
 
 use crate::cut::CutSurface;
 use crate::error::BemError;
+use crate::near_field::{POINTS, Spheres, TestTriangle};
 use crate::panels::PanelSet;
 use crate::progress::Progress;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 use fladder_mesh::Vec3;
 use rayon::prelude::*;
-
-/// Barycentric coordinates of the three test points.
-pub(crate) const POINTS: [[f64; 3]; 3] = [
-    [2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0],
-    [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
-    [1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0],
-];
 
 /// Triangles whose test points one task evaluates; fixed, so that the order of sums does
 /// not depend on the number of threads.
@@ -43,8 +38,10 @@ pub(crate) struct Galerkin {
     pub(crate) gradients: Vec<[Vec3; 3]>,
     /// Weight of each test function: a third of the areas round its vertex.
     pub(crate) weights: Vec<f64>,
-    points: Vec<[Vec3; 3]>,
+    /// Where each triangle is tested.
+    pub(crate) tests: Vec<TestTriangle>,
     panels: PanelSet,
+    spheres: Spheres,
 }
 
 /// The assembled equations.
@@ -71,7 +68,7 @@ impl Galerkin {
         let mut normals = Vec::new();
         let mut areas = Vec::new();
         let mut gradients = Vec::new();
-        let mut points = Vec::new();
+        let mut tests = Vec::new();
         for corners in &surface.triangles {
             let p = corners.map(|v| surface.vertices[v as usize]);
             let vector = (p[1] - p[0]).cross(&(p[2] - p[0]));
@@ -82,11 +79,12 @@ impl Galerkin {
             gradients.push(std::array::from_fn(|i| {
                 normal.cross(&(p[(i + 2) % 3] - p[(i + 1) % 3])) / twice_area
             }));
-            points.push(POINTS.map(|b| b[0] * p[0] + b[1] * p[1] + b[2] * p[2]));
+            tests.push(TestTriangle::new(&p));
             for &v in corners {
                 weights[v as usize] += twice_area / 6.0;
             }
         }
+        let panels = PanelSet::new(&surface.vertices, &surface.triangles);
         Self {
             triangles: surface.triangles.clone(),
             n_vertices,
@@ -94,17 +92,14 @@ impl Galerkin {
             areas,
             gradients,
             weights,
-            points,
-            panels: PanelSet::new(&surface.vertices, &surface.triangles),
+            tests,
+            spheres: Spheres::new(&panels),
+            panels,
         }
     }
 
     pub(crate) fn n_triangles(&self) -> usize {
         self.triangles.len()
-    }
-
-    pub(crate) fn point(&self, triangle: usize, q: usize) -> Vec3 {
-        self.points[triangle][q]
     }
 
     /// Weight of test function `corner` of a triangle at test point `q`.
@@ -157,26 +152,38 @@ impl Galerkin {
         let range = self.task_triangles(first);
         let n_points = 3 * range.len();
         let mut scratch = self.panels.scratch();
-        let mut d = vec![[0.0; 3]; self.n_triangles()];
+        let mut d: [Vec<[f64; 3]>; 3] =
+            std::array::from_fn(|_| vec![[0.0; 3]; self.n_triangles()]);
         let mut doublets = vec![0.0; n_points * self.n_vertices];
         let mut influences = vec![[0.0; 3]; n_points * self.n_triangles()];
         let mut free_terms = Vec::with_capacity(n_points);
-        let points = range.flat_map(|t| (0..3).map(move |q| (t, q)));
-        for (((t, q), row), s) in points
-            .zip(doublets.chunks_exact_mut(self.n_vertices))
-            .zip(influences.chunks_exact_mut(self.n_triangles()))
+        for ((t, rows), s) in range
+            .zip(doublets.chunks_exact_mut(3 * self.n_vertices))
+            .zip(influences.chunks_exact_mut(3 * self.n_triangles()))
         {
-            self.panels.doublets_and_sources(self.point(t, q), &mut scratch, &mut d, s);
-            for (corners, values) in self.triangles.iter().zip(&d) {
-                for (&v, value) in corners.iter().zip(values) {
-                    row[v as usize] -= value;
+            let (first, rest) = s.split_at_mut(self.n_triangles());
+            let (second, third) = rest.split_at_mut(self.n_triangles());
+            self.tests[t].doublets_and_sources(
+                &self.panels,
+                &self.spheres,
+                &mut scratch,
+                &mut d,
+                &mut [first, second, third],
+            );
+            for ((row, d), point) in
+                rows.chunks_exact_mut(self.n_vertices).zip(&d).zip(&POINTS)
+            {
+                for (corners, values) in self.triangles.iter().zip(d) {
+                    for (&v, value) in corners.iter().zip(values) {
+                        row[v as usize] -= value;
+                    }
                 }
+                let free = 1.0 - row.iter().sum::<f64>();
+                for (&v, shape) in self.triangles[t].iter().zip(point) {
+                    row[v as usize] += free * shape;
+                }
+                free_terms.push(free);
             }
-            let free = 1.0 - row.iter().sum::<f64>();
-            for (&v, shape) in self.triangles[t].iter().zip(&POINTS[q]) {
-                row[v as usize] += free * shape;
-            }
-            free_terms.push(free);
         }
         let influences = influences.as_flattened();
         let transposed =

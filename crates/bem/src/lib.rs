@@ -15,7 +15,7 @@
 //! | `adjacency`, `body_path`, `cut` | surface cut open along trailing edges and body lines |
 //! | `stations`, `wake` | the sheet and what jump it carries |
 //! | `contour`, `far_wake` | its semi-infinite part on a path in the complex plane |
-//! | `galerkin`, `dense` | the equations and their factorisation |
+//! | `galerkin`, `near_field`, `dense` | the equations and their factorisation |
 //! | `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
 //! | `wake_influence`, `transfer`, `solve` | the reduced model |
 //!
@@ -32,6 +32,7 @@ mod direct;
 mod error;
 mod far_wake;
 mod galerkin;
+mod near_field;
 pub mod panels;
 mod pressure;
 mod progress;

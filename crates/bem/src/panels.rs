@@ -64,6 +64,29 @@ struct SharedEdge {
     tangent: Vec3,
 }
 
+impl SharedEdge {
+    /// Lₑ from the distances of the ends.
+    fn logarithm(&self, a: f64, b: f64) -> f64 {
+        let sum = a + b;
+        let gap = (sum - self.length).max(EDGE_FLOOR * self.length);
+        ((sum + self.length) / gap).ln()
+    }
+
+    /// Jₑ; `offset` is the first end seen from the point.
+    fn source_term(&self, offset: &Vec3, a: f64, b: f64, logarithm: f64) -> f64 {
+        let along = self.tangent.dot(offset);
+        let across_squared = (a * a - along * along).max(0.0);
+        0.5 * ((along + self.length) * b - along * a + across_squared * logarithm)
+    }
+}
+
+/// Centroid and distance of the farthest corner.
+pub(crate) fn sphere(corners: &[Vec3; 3]) -> (Vec3, f64) {
+    let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let radius = corners.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);
+    (centre, radius)
+}
+
 /// Flat triangles prepared for evaluation at many points.
 #[derive(Clone, Debug)]
 pub struct PanelSet {
@@ -141,8 +164,7 @@ impl PanelSet {
     pub fn doublets(&self, point: Vec3, scratch: &mut PanelScratch, out: &mut [CornerValues]) {
         self.distances_and_logarithms(point, scratch);
         for (panel, value) in self.panels.iter().zip(out) {
-            let foot = panel.foot(scratch);
-            *value = panel.doublet(&foot);
+            *value = panel.doublet(&panel.foot(&scratch.view(panel)));
         }
     }
 
@@ -157,10 +179,36 @@ impl PanelSet {
         self.distances_and_logarithms(point, scratch);
         self.source_edge_terms(scratch);
         for ((panel, d), s) in self.panels.iter().zip(doublets).zip(sources) {
-            let foot = panel.foot(scratch);
+            let foot = panel.foot(&scratch.view(panel));
             *d = panel.doublet(&foot);
-            *s = panel.source(&foot, scratch);
+            *s = panel.source(&foot, panel.edges.map(|e| scratch.source_edges[e as usize]));
         }
+    }
+
+    /// D and S of one triangle's corners at `point`, without working space.
+    pub fn one(&self, triangle: usize, point: Vec3) -> (CornerValues, CornerValues) {
+        let panel = &self.panels[triangle];
+        let offsets = panel.corners.map(|v| self.vertices[v as usize] - point);
+        let distances = offsets.map(|d| d.norm());
+        let edges = panel.edges.map(|e| &self.edges[e as usize]);
+        let mut logarithms = [0.0; 3];
+        let mut source_edges = [0.0; 3];
+        for (i, edge) in edges.iter().enumerate() {
+            let (mut a, mut b) = ((i + 1) % 3, (i + 2) % 3);
+            if panel.corners[a] != edge.ends[0] {
+                (a, b) = (b, a);
+            }
+            logarithms[i] = edge.logarithm(distances[a], distances[b]);
+            source_edges[i] =
+                edge.source_term(&offsets[a], distances[a], distances[b], logarithms[i]);
+        }
+        let foot = panel.foot(&View { offsets, distances, logarithms });
+        (panel.doublet(&foot), panel.source(&foot, source_edges))
+    }
+
+    /// Centre and radius of a sphere round one triangle.
+    pub(crate) fn sphere(&self, triangle: usize) -> (Vec3, f64) {
+        sphere(&self.panels[triangle].corners.map(|v| self.vertices[v as usize]))
     }
 
     fn distances_and_logarithms(&self, point: Vec3, scratch: &mut PanelScratch) {
@@ -172,9 +220,7 @@ impl PanelSet {
         }
         for (edge, logarithm) in self.edges.iter().zip(&mut scratch.logarithms) {
             let [a, b] = edge.ends.map(|v| scratch.distances[v as usize]);
-            let sum = a + b;
-            let gap = (sum - edge.length).max(EDGE_FLOOR * edge.length);
-            *logarithm = ((sum + edge.length) / gap).ln();
+            *logarithm = edge.logarithm(a, b);
         }
     }
 
@@ -182,16 +228,29 @@ impl PanelSet {
         let PanelScratch { offsets, distances, logarithms, source_edges } = scratch;
         for ((edge, l), j) in self.edges.iter().zip(logarithms).zip(source_edges) {
             let [a, b] = edge.ends.map(|v| v as usize);
-            let along = edge.tangent.dot(&offsets[a]);
-            let across_squared = (distances[a] * distances[a] - along * along).max(0.0);
-            *j = 0.5
-                * ((along + edge.length) * distances[b] - along * distances[a]
-                    + across_squared * *l);
+            *j = edge.source_term(&offsets[a], distances[a], distances[b], *l);
         }
     }
 }
 
-/// What a field point looks like from one triangle.
+/// Corners and edges of one triangle seen from a point.
+struct View {
+    offsets: [Vec3; 3],
+    distances: [f64; 3],
+    logarithms: [f64; 3],
+}
+
+impl PanelScratch {
+    fn view(&self, panel: &Panel) -> View {
+        View {
+            offsets: panel.corners.map(|v| self.offsets[v as usize]),
+            distances: panel.corners.map(|v| self.distances[v as usize]),
+            logarithms: panel.edges.map(|e| self.logarithms[e as usize]),
+        }
+    }
+}
+
+/// Foot of a field point in the plane of one triangle.
 struct Foot {
     height: f64,
     solid_angle: f64,
@@ -243,16 +302,16 @@ impl Panel {
         }
     }
 
-    fn foot(&self, scratch: &PanelScratch) -> Foot {
-        let [r0, r1, r2] = self.corners.map(|v| scratch.distances[v as usize]);
-        let [d0, d1, d2] = self.corners.map(|v| scratch.offsets[v as usize]);
+    fn foot(&self, view: &View) -> Foot {
+        let [r0, r1, r2] = view.distances;
+        let [d0, d1, d2] = view.offsets;
+        let logarithms = view.logarithms;
         // Everything is measured from a corner: n·P − n·v₀ would lose digits far from
         // the origin.
         let height = -self.normal.dot(&d0);
         let first = 1.0 - self.gradients[0].dot(&d0);
         let second = -self.gradients[1].dot(&d0);
         let shape = [first, second, 1.0 - first - second];
-        let logarithms = self.edges.map(|e| scratch.logarithms[e as usize]);
         if height.abs() < self.coplanar {
             return Foot { height: 0.0, solid_angle: 0.0, shape, logarithms };
         }
@@ -269,8 +328,7 @@ impl Panel {
         })
     }
 
-    fn source(&self, foot: &Foot, scratch: &PanelScratch) -> CornerValues {
-        let j = self.edges.map(|e| scratch.source_edges[e as usize]);
+    fn source(&self, foot: &Foot, j: [f64; 3]) -> CornerValues {
         let inverse_distance = (0..3)
             .map(|e| foot.shape[e] * self.heights[e] * foot.logarithms[e])
             .sum::<f64>()

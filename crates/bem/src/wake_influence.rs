@@ -5,7 +5,9 @@
 
 use crate::contour::Path;
 use crate::error::BemError;
-use crate::galerkin::{Galerkin, POINTS};
+use crate::galerkin::Galerkin;
+use crate::near_field::{POINTS, Spheres};
+use crate::panels::{CornerValues, PanelScratch};
 use crate::progress::Progress;
 use crate::wake::Wake;
 use faer::linalg::matmul::matmul;
@@ -51,6 +53,7 @@ impl WakeInfluence<'_> {
                         return Vec::new();
                     }
                     let mut out = vec![0.0; 3 * columns];
+                    evaluator.near(t);
                     for q in 0..3 {
                         let part = &mut out[q * columns..(q + 1) * columns];
                         evaluator.steady_row(t, q, path, part);
@@ -149,6 +152,7 @@ impl WakeInfluence<'_> {
         let mut near = vec![0.0; n_points * slots];
         let mut far = paths.map(|p| vec![c64::new(0.0, 0.0); n_points * lines * p.nodes.len()]);
         for (i, t) in triangles.enumerate() {
+            evaluator.near(t);
             for q in 0..3 {
                 let p = 3 * i + q;
                 for (corner, &v) in self.galerkin.triangles[t].iter().enumerate() {
@@ -157,7 +161,7 @@ impl WakeInfluence<'_> {
                         tested[(f, p)] += weight * left[(v as usize, f)];
                     }
                 }
-                evaluator.near_row(t, q, &mut near[p * slots..(p + 1) * slots]);
+                near[p * slots..(p + 1) * slots].copy_from_slice(&evaluator.slots[q]);
                 for (path, out) in paths.iter().zip(&mut far) {
                     let width = lines * path.nodes.len();
                     evaluator.far_row(t, q, path, &mut out[p * width..(p + 1) * width]);
@@ -190,13 +194,13 @@ impl WakeInfluence<'_> {
             &paths.decaying
         };
         let mut evaluator = Evaluator::new(self);
-        let mut near = vec![0.0; self.wake.slots.len()];
         let nodes = path.nodes.len();
         let mut far = vec![c64::new(0.0, 0.0); self.wake.far.anchors.len() * nodes];
         let mut tested = Mat::zeros(self.galerkin.n_vertices, columns);
         for t in 0..self.galerkin.n_triangles() {
+            evaluator.near(t);
             for q in 0..3 {
-                evaluator.near_row(t, q, &mut near);
+                let near = evaluator.slots[q].clone();
                 evaluator.far_row(t, q, path, &mut far);
                 let mut row = vec![c64::new(0.0, 0.0); columns];
                 for (slot, value) in self.wake.slots.iter().zip(&near) {
@@ -226,11 +230,14 @@ impl WakeInfluence<'_> {
 /// Working space of one thread.
 struct Evaluator<'a> {
     of: &'a WakeInfluence<'a>,
-    near_scratch: crate::panels::PanelScratch,
-    near_values: Vec<[f64; 3]>,
-    body_scratch: crate::panels::PanelScratch,
-    body_values: Vec<[f64; 3]>,
-    slots: Vec<f64>,
+    near_spheres: Spheres,
+    near_scratch: PanelScratch,
+    near_values: [Vec<CornerValues>; 3],
+    body_spheres: Spheres,
+    body_scratch: PanelScratch,
+    body_values: [Vec<CornerValues>; 3],
+    /// Influence of every slot at the three points of the triangle last asked for.
+    slots: [Vec<f64>; 3],
     distances: Vec<c64>,
     lines: Vec<c64>,
 }
@@ -238,42 +245,56 @@ struct Evaluator<'a> {
 impl<'a> Evaluator<'a> {
     fn new(of: &'a WakeInfluence<'a>) -> Self {
         let wake = of.wake;
+        let values = |n: usize| std::array::from_fn(|_| vec![[0.0; 3]; n]);
         Self {
             of,
+            near_spheres: Spheres::new(&wake.near.panels),
             near_scratch: wake.near.panels.scratch(),
-            near_values: vec![[0.0; 3]; wake.near.panels.len()],
+            near_values: values(wake.near.panels.len()),
+            body_spheres: Spheres::new(&wake.body.panels),
             body_scratch: wake.body.panels.scratch(),
-            body_values: vec![[0.0; 3]; wake.body.panels.len()],
-            slots: vec![0.0; wake.slots.len()],
+            body_values: values(wake.body.panels.len()),
+            slots: std::array::from_fn(|_| vec![0.0; wake.slots.len()]),
             distances: Vec::new(),
             lines: Vec::new(),
         }
     }
 
-    /// Influence of every slot at one test point: free sheet, and on bodies
+    /// Influence of every slot at the points of one triangle: free sheet, and on bodies
     /// D^up − c N^up of the corners that carry a jump.
-    fn near_row(&mut self, triangle: usize, q: usize, out: &mut [f64]) {
-        let point = self.of.galerkin.point(triangle, q);
+    fn near(&mut self, triangle: usize) {
         let wake = self.of.wake;
-        out.fill(0.0);
-        wake.near.panels.doublets(point, &mut self.near_scratch, &mut self.near_values);
-        wake.near.gather(&self.near_values, out);
-        if wake.body.panels.is_empty() {
-            return;
-        }
-        wake.body.panels.doublets(point, &mut self.body_scratch, &mut self.body_values);
+        let test = &self.of.galerkin.tests[triangle];
+        test.doublets(
+            &wake.near.panels,
+            &self.near_spheres,
+            &mut self.near_scratch,
+            &mut self.near_values,
+        );
+        test.doublets(
+            &wake.body.panels,
+            &self.body_spheres,
+            &mut self.body_scratch,
+            &mut self.body_values,
+        );
         if let Ok(own) = wake.body.body_triangles.binary_search(&(triangle as u32)) {
-            let free = self.of.free_terms[3 * triangle + q];
-            for (value, shape) in self.body_values[own].iter_mut().zip(&POINTS[q]) {
-                *value -= free * shape;
+            for (q, values) in self.body_values.iter_mut().enumerate() {
+                let free = self.of.free_terms[3 * triangle + q];
+                for (value, shape) in values[own].iter_mut().zip(&POINTS[q]) {
+                    *value -= free * shape;
+                }
             }
         }
-        wake.body.gather(&self.body_values, out);
+        for (q, out) in self.slots.iter_mut().enumerate() {
+            out.fill(0.0);
+            wake.near.gather(&self.near_values[q], out);
+            wake.body.gather(&self.body_values[q], out);
+        }
     }
 
     /// Influence of every streamline at every node of a path.
     fn far_row(&mut self, triangle: usize, q: usize, path: &Path, out: &mut [c64]) {
-        let point = self.of.galerkin.point(triangle, q);
+        let point = self.of.galerkin.tests[triangle].points[q];
         self.of.wake.far.influence(
             point,
             &path.nodes,
@@ -283,17 +304,14 @@ impl<'a> Evaluator<'a> {
         );
     }
 
-    /// Influence of every column at s = 0.
+    /// Influence of every column at s = 0 at one point of the triangle last asked for.
     fn steady_row(&mut self, triangle: usize, q: usize, path: &Path, out: &mut [f64]) {
         let wake = self.of.wake;
-        let mut slots = std::mem::take(&mut self.slots);
-        self.near_row(triangle, q, &mut slots);
-        for (slot, value) in wake.slots.iter().zip(&slots) {
+        for (slot, value) in wake.slots.iter().zip(&self.slots[q]) {
             for &(column, weight) in &wake.threads[slot.thread] {
                 out[column] += weight * value;
             }
         }
-        self.slots = slots;
         let n = path.nodes.len();
         let mut lines = std::mem::take(&mut self.lines);
         lines.resize(wake.far.anchors.len() * n, c64::new(0.0, 0.0));
