@@ -1,5 +1,10 @@
 //! The commands in order, the cache between them, and what they write.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "the helpers of these tests unwrap as the tests do"
+)]
+
 mod cli_support;
 
 use cli_support::{Place, errors, output, wing_place};
@@ -202,9 +207,9 @@ fn q_is_evaluated_at_any_point() {
     let place = wing_place();
     let points = ["-0.1,0.2", "0.05,-0.3", "0.05,0.3", "0.0,0.0"];
     let mut arguments = vec!["gaf", "wing.toml", "-q", "--json", "q.json"];
-    points
-        .iter()
-        .for_each(|point| arguments.extend(["--at", point]));
+    for point in &points {
+        arguments.extend(["--at", point]);
+    }
     place.run(&arguments).code(0);
     let found = parsed(&place, "q.json");
     let points = found["points"].as_array().unwrap();

@@ -209,7 +209,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         Command::Run { case, method } => commands::run(&session, &case, method)?,
         Command::Gaf { case, json, at } => {
-            commands::gaf(&session, &case, json.as_deref(), &at)?
+            commands::gaf(&session, &case, json.as_deref(), &at)?;
         }
         Command::Sweep { case, json, method } => {
             commands::sweep(&session, &case, json.as_deref(), method)?;

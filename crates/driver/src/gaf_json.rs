@@ -147,7 +147,7 @@ fn check(path: &Path, document: Document) -> Result<Given, Failure> {
         points,
         document.steady,
     )
-    .map_err(|error| refuse(path, error.to_string(), place_of(&error)))?;
+    .map_err(|error| refuse(path, error.to_string(), Some(place_of(&error))))?;
     Ok(Given {
         table,
         frames: document.frames,
@@ -182,13 +182,13 @@ fn point(
     })
 }
 
-fn place_of(error: &GafError) -> Option<String> {
+fn place_of(error: &GafError) -> String {
     match error {
-        GafError::Semichord(_) => Some("semichord".to_owned()),
-        GafError::NoModes => Some("modes".to_owned()),
-        GafError::Steady { .. } => Some("steady".to_owned()),
-        GafError::Place { index, .. } => Some(format!("points[{}]", index - 1)),
-        _ => Some("points".to_owned()),
+        GafError::Semichord(_) => "semichord".to_owned(),
+        GafError::NoModes => "modes".to_owned(),
+        GafError::Steady { .. } => "steady".to_owned(),
+        GafError::Place { index, .. } => format!("points[{}]", index - 1),
+        _ => "points".to_owned(),
     }
 }
 
@@ -253,7 +253,7 @@ mod tests {
             d.points.push(Sample {
                 g: 0.1,
                 ..d.points[0].clone()
-            })
+            });
         });
         assert!(failure.what.contains("hole"), "{failure}");
         let failure = refusal(|d| d.frames.clear());

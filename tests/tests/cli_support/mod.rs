@@ -76,41 +76,41 @@ fn build(folder: &Path) {
 }
 
 /// A folder with a case in it.
-pub struct Place(tempfile::TempDir);
+pub(crate) struct Place(tempfile::TempDir);
 
 impl Place {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(tempfile::tempdir().expect("a temporary folder"))
     }
 
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
-    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> &Self {
+    pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) -> &Self {
         std::fs::write(self.path(name), content).expect("a writable folder");
         self
     }
 
-    pub fn read(&self, name: &str) -> String {
+    pub(crate) fn read(&self, name: &str) -> String {
         std::fs::read_to_string(self.path(name))
             .unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    pub fn command(&self, arguments: &[&str]) -> Command {
+    pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(program());
         command.current_dir(self.0.path()).args(arguments);
         command
     }
 
     /// Runs the program in this folder.
-    pub fn run(&self, arguments: &[&str]) -> Assert {
+    pub(crate) fn run(&self, arguments: &[&str]) -> Assert {
         self.command(arguments).assert()
     }
 
     /// Runs what must be refused with exit code 2, and gives back the message,
     /// which must have its four parts and come from no panic.
-    pub fn refused(&self, arguments: &[&str]) -> String {
+    pub(crate) fn refused(&self, arguments: &[&str]) -> String {
         let text = errors(&self.run(arguments).code(2));
         for part in ["error:", "where:", "why:", "do:"] {
             assert!(text.contains(part), "`{part}` is missing in:\n{text}");
@@ -123,16 +123,16 @@ impl Place {
     }
 }
 
-pub fn errors(assert: &Assert) -> String {
+pub(crate) fn errors(assert: &Assert) -> String {
     String::from_utf8_lossy(&assert.get_output().stderr).into_owned()
 }
 
-pub fn output(assert: &Assert) -> String {
+pub(crate) fn output(assert: &Assert) -> String {
     String::from_utf8_lossy(&assert.get_output().stdout).into_owned()
 }
 
 /// A surface as Wavefront OBJ.
-pub fn obj(mesh: &TriMesh) -> String {
+pub(crate) fn obj(mesh: &TriMesh) -> String {
     let mut text = String::new();
     for v in &mesh.vertices {
         writeln!(text, "v {} {} {}", v.x, v.y, v.z).expect("strings take all");
@@ -144,7 +144,7 @@ pub fn obj(mesh: &TriMesh) -> String {
 }
 
 /// A coarse wing that is computed in a second.
-pub fn small_wing() -> TriMesh {
+pub(crate) fn small_wing() -> TriMesh {
     let wing = NacaWing {
         thickness: 0.12,
         chord: 1.0,
@@ -157,7 +157,7 @@ pub fn small_wing() -> TriMesh {
 }
 
 /// A rigid wing that plunges and pitches on springs.
-pub const WING_CASE: &str = r#"title = "small wing"
+pub(crate) const WING_CASE: &str = r#"title = "small wing"
 [reference]
 semichord = 0.5
 [flow]
@@ -182,7 +182,7 @@ speed = { from = 20.0, to = 80.0, count = 13 }
 "#;
 
 /// The small wing and its case in a folder.
-pub fn wing_place() -> Place {
+pub(crate) fn wing_place() -> Place {
     let place = Place::new();
     place
         .write("wing.obj", obj(&small_wing()))

@@ -17,7 +17,7 @@ const QUARANTINE: &str = "quarantine";
 
 /// Age at which a temporary file belongs to a process that is gone: writing
 /// takes seconds.
-const STALE: Duration = Duration::from_secs(3600);
+const STALE: Duration = Duration::from_hours(1);
 
 /// What may be stored.
 pub trait Stored: Serialize + DeserializeOwned {

@@ -9,7 +9,7 @@ use crate::cache::{Cache, Key, KeyBuilder, Stored};
 use crate::case::{CaseFile, WakeDirection};
 use crate::failure::Failure;
 use crate::gaf_json::{self, Document, Frame, Sample};
-use crate::terminal::{Bar, Console};
+use crate::terminal::{Bar, Console, warn};
 use faer::c64;
 use fladder_bem::{BemError, Flow, LaplaceError, Plan, Problem, Solution};
 use fladder_mesh::Vec3;
@@ -136,10 +136,10 @@ pub(crate) fn key(file: &CaseFile, problem: &Problem<'_>) -> Key {
 }
 
 /// Forces from the cache, if they are there.
-pub(crate) fn cached(cache: &Cache, console: &Console, key: Key) -> Option<OwnForces> {
+pub(crate) fn cached(cache: &Cache, key: Key) -> Option<OwnForces> {
     let loaded = cache.load::<StoredForces>(&key);
     if let Some(warning) = loaded.warning {
-        console.warn(warning);
+        warn(warning);
     }
     loaded.value.map(|stored| OwnForces {
         key,
@@ -160,7 +160,7 @@ pub(crate) fn obtain(
 ) -> Result<OwnForces, Failure> {
     let problem = problem(file, aircraft);
     let key = key(file, &problem);
-    if let Some(forces) = cached(cache, console, key) {
+    if let Some(forces) = cached(cache, key) {
         return Ok(forces);
     }
     let plan = fladder_bem::plan(&problem).map_err(|error| unsolved(file, &error))?;
@@ -185,7 +185,7 @@ pub(crate) fn obtain(
         solution,
     };
     if let Some(warning) = cache.publish(&key, &stored) {
-        console.warn(warning);
+        warn(warning);
     }
     Ok(OwnForces {
         key,

@@ -40,9 +40,9 @@ pub(crate) fn gaf(
     };
     let samples = own_forces::samples(&own.stored, &points)?;
     if !at.is_empty() {
-        samples
-            .iter()
-            .for_each(|sample| report::sample(console, &aircraft.mode_names(), sample));
+        for sample in &samples {
+            report::sample(console, &aircraft.mode_names(), sample);
+        }
     }
     match json {
         Some(json) => {

@@ -20,7 +20,7 @@ use crate::cli::Common;
 use crate::failure::Failure;
 use crate::files;
 use crate::json;
-use crate::terminal::Console;
+use crate::terminal::{Console, warn};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -50,7 +50,7 @@ impl Session {
     fn open_cache(&self, file: &CaseFile) -> Cache {
         let (cache, warning) = Cache::open(&self.cache_folder(file));
         if let Some(warning) = warning {
-            self.console.warn(warning);
+            warn(warning);
         }
         cache
     }

@@ -55,7 +55,7 @@ fn stored(
 ) -> Result<OwnForces, Failure> {
     let folder = session.cache_folder(file);
     let key = own_forces::key(file, &own_forces::problem(file, aircraft));
-    own_forces::cached(&Cache::existing(&folder), &session.console, key).ok_or_else(|| {
+    own_forces::cached(&Cache::existing(&folder), key).ok_or_else(|| {
         Failure::input(
             format!("the forces of this case are not in the cache (key {})", key.to_hex()),
             folder.display().to_string(),

@@ -44,9 +44,9 @@ pub(crate) fn roots(console: &Console, methods: &Methods, speeds: &[f64]) {
     rigid_roots(console, best);
     completeness(console, best);
     console.say("");
-    verdict(best, *first, *last)
-        .iter()
-        .for_each(|line| console.say(line));
+    for line in verdict(best, *first, *last) {
+        console.say(line);
+    }
 }
 
 fn crossings(console: &Console, methods: &Methods, best: &MethodResult) {

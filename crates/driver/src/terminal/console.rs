@@ -46,12 +46,6 @@ impl Console {
         }
     }
 
-    /// Something the user should know though the run goes on.
-    pub(crate) fn warn(&self, text: impl AsRef<str>) {
-        // Where standard error is closed there is nobody to tell.
-        let _ = writeln!(io::stderr().lock(), "warning: {}", text.as_ref());
-    }
-
     /// Remarks, one line each.
     pub(crate) fn notes<'a>(&self, notes: impl IntoIterator<Item = &'a String>) {
         notes
@@ -70,4 +64,10 @@ impl Console {
             _ => Ok(()),
         }
     }
+}
+
+/// Something the user should know though the run goes on.
+pub(crate) fn warn(text: impl AsRef<str>) {
+    // Where standard error is closed there is nobody to tell.
+    let _ = writeln!(io::stderr().lock(), "warning: {}", text.as_ref());
 }
