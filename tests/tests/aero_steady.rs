@@ -28,7 +28,7 @@ fn lift_slope_of_aspect_ratio_8_with_thickness() {
     for row in csv("wing_ar8_thick_lift_slope.csv") {
         let thickness: f64 = row["thickness"].parse().expect("number");
         let reference: f64 = row["CL_alpha"].parse().expect("number");
-        let wing = NacaWing { thickness, n_chord: 24, n_half_span: 12, ..NacaWing::default() };
+        let wing = NacaWing { thickness, n_chord: 24, n_half_span: 18, ..NacaWing::default() };
         for (kind, mesh) in
             [("structured", wing.structured()), ("unstructured", wing.unstructured(1))]
         {
