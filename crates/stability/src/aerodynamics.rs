@@ -7,6 +7,8 @@
 
 use faer::{Mat, c64};
 
+use crate::rational::RationalFit;
+
 /// A source of generalised aerodynamic forces at any point of the Laplace
 /// plane: a fit to samples, or the aerodynamic solver itself.
 pub trait Aerodynamics: Sync {
@@ -28,6 +30,18 @@ pub trait Aerodynamics: Sync {
             (ahead[(i, j)] - here[(i, j)]) / step
         });
         (here, slope)
+    }
+
+    /// Largest real part of a pole or branch point, where it is known; roots
+    /// are counted to the right of it near the real axis.
+    fn rightmost_pole(&self) -> Option<f64> {
+        None
+    }
+
+    /// The model itself where it is rational: then all its roots can be had
+    /// from one standard eigenproblem.
+    fn as_rational(&self) -> Option<&RationalFit> {
+        None
     }
 }
 

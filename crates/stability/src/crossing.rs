@@ -28,6 +28,10 @@ const MAX_STEPS: usize = 100;
 /// axis.
 const LARGEST_JUMP: f64 = 0.05;
 
+/// Change of $g$, as a part of $|p|$, that is believed where the root was lost
+/// between the speeds.
+const LARGEST_STEP: f64 = 0.3;
+
 /// Steps back from the first speed of a branch that begins unstable.
 const BACK_STEPS: usize = 8;
 
@@ -143,8 +147,13 @@ pub(crate) fn locate(bracket: &Bracketed, resolver: &dyn Resolver) -> Option<Fou
             low = (parameter, pair)
         }
     }
-    let jump = (high.1.p.re - low.1.p.re).abs();
-    if high.0 - low.0 < WIDTH && jump > LARGEST_JUMP * high.1.p.norm() {
+    let jump = (high.1.p.re - low.1.p.re).abs() / high.1.p.norm();
+    let limit = if high.0 - low.0 < WIDTH {
+        LARGEST_JUMP
+    } else {
+        LARGEST_STEP
+    };
+    if high.1.p.im > 0.0 && jump > limit {
         return None;
     }
     let fraction = low.1.p.re / (low.1.p.re - high.1.p.re);

@@ -24,6 +24,7 @@ mod linalg;
 mod p2;
 mod pk;
 mod polish;
+mod rational;
 mod report;
 mod resolvers;
 mod results;
@@ -45,6 +46,7 @@ pub use p2::{
     Candidate, Cell, DEFAULT_DAMPING_LIMIT, FitError, FitReport, PiecewiseQuadratic, Region,
 };
 pub use pk::PkForm;
+pub use rational::RationalFit;
 pub use results::{
     Branch, Crossing, Divergence, Kind, MethodResult, Methods, SCHEMA, SweepResult,
     UnstableStart,

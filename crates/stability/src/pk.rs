@@ -37,6 +37,9 @@ pub enum PkForm {
 /// $|h|$ at which a root counts as found.
 const TOLERANCE: f64 = 1e-10;
 
+/// Steps below this that no longer shrink are rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Steps after which the safeguarded iteration gives up; bisection alone
 /// needs 34 for the tolerance.
 const MAX_STEPS: usize = 60;
@@ -175,10 +178,11 @@ impl PkProblem<'_> {
             };
             match quick.filter(is_new) {
                 Some(pair) => roots.push(pair),
-                None => roots.extend(self.bisect(bracket)?.filter(|pair| is_new(pair))),
+                None => roots.extend(self.enclose(bracket)?.filter(|pair| is_new(pair))),
             }
         }
-        roots.retain(|root| root.p.im > APERIODIC);
+        let first = samples.iter().copied().find(|k| *k > 0.0).unwrap_or(0.0);
+        roots.retain(|root| is_oscillation(root.p, first));
         roots.sort_by(|a, b| a.p.im.total_cmp(&b.p.im).then(a.p.re.total_cmp(&b.p.re)));
         Ok(PkRoots {
             roots,
@@ -257,19 +261,24 @@ impl PkProblem<'_> {
     /// Two-sided Rayleigh iteration for the root of the pencil nearest `p`.
     fn settle(&self, pencil: &Pencil, mut p: c64) -> Option<Eigenpair> {
         const STEPS: usize = 12;
+        let mut last = f64::INFINITY;
         for _ in 0..STEPS {
             let operator = self.operator(pencil, p);
-            let pair = inverse_iteration(p, operator.clone());
+            let image = operator.clone();
+            let pair = inverse_iteration(p, operator);
             let slope = self.operator_slope(pencil, p);
             let denominator = inner(&pair.left, &apply(slope.as_ref(), &pair.right));
-            let step = inner(&pair.left, &apply(operator.as_ref(), &pair.right)) / denominator;
-            if !step.norm().is_finite() {
+            let change = inner(&pair.left, &apply(image.as_ref(), &pair.right)) / denominator;
+            let step = change.norm();
+            if !step.is_finite() {
                 return None;
             }
-            p -= step;
-            if step.norm() < 1e-12 * (1.0 + p.norm()) {
+            p -= change;
+            let is_rounding = step < ROUNDING && step > 0.1 * last;
+            if step < 1e-3 * TOLERANCE || is_rounding {
                 return Some(Eigenpair { p, ..pair });
             }
+            last = step;
         }
         None
     }
@@ -293,11 +302,19 @@ impl PkProblem<'_> {
         -numerator / (denominator * 2.0 * DIFFERENCE_STEP)
     }
 
-    /// Bisection on the sorted eigenvalue itself: slow, certain.
-    fn bisect(&self, bracket: &Bracket) -> Result<Option<Eigenpair>, NoConvergence> {
+    /// False position (Illinois) on the sorted eigenvalue itself, with every
+    /// fourth step a bisection: slow, certain.
+    fn enclose(&self, bracket: &Bracket) -> Result<Option<Eigenpair>, NoConvergence> {
         let [mut low, mut high] = [bracket.low, bracket.high];
-        for _ in 0..MAX_STEPS {
-            let k = f64::midpoint(low, high);
+        let mut weights = bracket.misses;
+        let mut last_side = 2;
+        for step in 0..MAX_STEPS {
+            let fraction = if step % 4 == 3 {
+                0.5
+            } else {
+                weights[0] / (weights[0] - weights[1])
+            };
+            let k = low + fraction.clamp(1e-6, 1.0 - 1e-6) * (high - low);
             let p = self.upper(k)?[bracket.branch];
             let miss = p.im - k;
             if miss.abs() < TOLERANCE || high - low < TOLERANCE {
@@ -306,14 +323,24 @@ impl PkProblem<'_> {
                     self.operator(&self.pencil(k), p),
                 )));
             }
-            if (miss > 0.0) == bracket.is_falling {
-                low = k
-            } else {
-                high = k
+            let side = usize::from((miss > 0.0) != bracket.is_falling);
+            weights[side] = miss;
+            if last_side == side {
+                weights[1 - side] *= 0.5;
             }
+            last_side = side;
+            if side == 0 { low = k } else { high = k }
         }
         Ok(None)
     }
+}
+
+/// At $k>0$ the interpolated $Q$ moves the zero roots of a free body away from
+/// zero, and some of them then meet $\operatorname{Im}p = k$ below the first
+/// sample, damped or growing faster than they turn. They are artefacts of the
+/// method and are left out.
+fn is_oscillation(p: c64, first_sample: f64) -> bool {
+    p.im > APERIODIC && (p.im >= first_sample || p.re.abs() < p.im)
 }
 
 /// An interval of $k$ in which $h$ of one sorted branch changes sign.
@@ -323,6 +350,8 @@ struct Bracket {
     high: f64,
     /// $h$ falls from positive to negative.
     is_falling: bool,
+    /// $h$ at both ends.
+    misses: [f64; 2],
     guess: f64,
     guess_root: c64,
 }
@@ -335,7 +364,8 @@ impl Bracket {
     ) -> Option<Self> {
         let settle = |h: f64| if h.abs() < APERIODIC { 0.0 } else { h };
         let (at_low, at_high) = (settle(first.im - low), settle(second.im - high));
-        if (at_low > 0.0) == (at_high > 0.0) {
+        let starts_real = low == 0.0 && at_low == 0.0;
+        if starts_real || (at_low > 0.0) == (at_high > 0.0) {
             return None;
         }
         let fraction = (at_low / (at_low - at_high)).clamp(0.0, 1.0);
@@ -344,6 +374,7 @@ impl Bracket {
             low,
             high,
             is_falling: at_low > 0.0,
+            misses: [at_low, at_high],
             guess: low + fraction * (high - low),
             guess_root: first + (second - first) * fraction,
         })
@@ -352,10 +383,10 @@ impl Bracket {
 
 /// Places below the first sample where $h$ is looked at: slow rigid motions
 /// have several roots there.
-const LOW_PLACES: i32 = 8;
+const LOW_PLACES: i32 = 5;
 
 /// Each is this much lower than the one before.
-const LOW_RATIO: f64 = 3.0;
+const LOW_RATIO: f64 = 4.0;
 
 /// Zero, places below the first sample, and the samples.
 fn scan_grid(samples: &[f64]) -> Vec<f64> {

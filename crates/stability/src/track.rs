@@ -12,6 +12,7 @@ use faer::{Mat, c64};
 
 use crate::assignment::assign;
 use crate::eigenpair::Eigenpair;
+use crate::linalg::inner;
 
 /// Dearer pairs are not joined; half of it for each side left alone.
 const UNMATCHED: f64 = 0.7;
@@ -77,17 +78,48 @@ pub(crate) fn follow(stations: &[Station<'_>]) -> Vec<Track> {
     tracks
 }
 
+/// A root with what its comparisons need.
+struct Weighed<'a> {
+    root: &'a Eigenpair,
+    /// $s$ in rad/s.
+    rate: c64,
+    /// $Mx$.
+    momentum: Vec<c64>,
+    /// $x^HMx$.
+    energy: f64,
+}
+
+impl<'a> Weighed<'a> {
+    fn new(root: &'a Eigenpair, rate: f64, mass: &Mat<f64>) -> Self {
+        let momentum = weigh(&root.right, mass);
+        let energy = inner(&root.right, &momentum).re;
+        Self {
+            root,
+            rate: root.p * rate,
+            momentum,
+            energy,
+        }
+    }
+}
+
 /// For every root of the station the head it continues.
 fn join(heads: &[&Eigenpair], rate: f64, station: &Station<'_>) -> Vec<Option<usize>> {
-    let (old, new) = (heads.len(), station.roots.len());
+    let before: Vec<Weighed<'_>> = heads
+        .iter()
+        .map(|root| Weighed::new(root, rate, station.mass))
+        .collect();
+    let after: Vec<Weighed<'_>> = station
+        .roots
+        .iter()
+        .map(|root| Weighed::new(root, station.rate, station.mass))
+        .collect();
+    let (old, new) = (before.len(), after.len());
     let size = old + new;
     let costs: Vec<Vec<f64>> = (0..size)
         .map(|row| {
             (0..size)
                 .map(|column| match (row < old, column < new) {
-                    (true, true) => {
-                        pair_cost((heads[row], rate), &station.roots[column], station)
-                    }
+                    (true, true) => pair_cost(&before[row], &after[column]),
                     (false, false) => 0.0,
                     _ => 0.5 * UNMATCHED,
                 })
@@ -103,27 +135,31 @@ fn join(heads: &[&Eigenpair], rate: f64, station: &Station<'_>) -> Vec<Option<us
     partners
 }
 
-fn pair_cost((head, rate): (&Eigenpair, f64), root: &Eigenpair, station: &Station<'_>) -> f64 {
-    if (head.p.im == 0.0) != (root.p.im == 0.0) {
+fn pair_cost(before: &Weighed<'_>, after: &Weighed<'_>) -> f64 {
+    if (before.root.p.im == 0.0) != (after.root.p.im == 0.0) {
         return FORBIDDEN;
     }
-    let (before, after) = (head.p * rate, root.p * station.rate);
-    let distance = (after - before).norm();
-    let scale = f64::midpoint(before.norm(), after.norm()) + SMALL_RATE;
-    1.0 - alikeness(&head.right, &root.right, station.mass) + distance / scale
+    let distance = (after.rate - before.rate).norm();
+    let scale = f64::midpoint(before.rate.norm(), after.rate.norm()) + SMALL_RATE;
+    let likeness =
+        inner(&before.root.right, &after.momentum).norm_sqr() / (before.energy * after.energy);
+    1.0 - likeness + distance / scale
 }
 
 /// Modal assurance criterion weighted by the mass.
 pub(crate) fn alikeness(first: &[c64], second: &[c64], mass: &Mat<f64>) -> f64 {
-    let weigh = |left: &[c64], right: &[c64]| -> c64 {
-        let mut sum = c64::new(0.0, 0.0);
-        for (j, value) in right.iter().enumerate() {
-            for (i, other) in left.iter().enumerate() {
-                sum += other.conj() * value * mass[(i, j)];
-            }
+    let (one, other) = (weigh(first, mass), weigh(second, mass));
+    let product = inner(first, &other).norm_sqr();
+    product / (inner(first, &one).re * inner(second, &other).re)
+}
+
+/// $Mx$.
+fn weigh(vector: &[c64], mass: &Mat<f64>) -> Vec<c64> {
+    let mut out = vec![c64::new(0.0, 0.0); vector.len()];
+    for (column, value) in vector.iter().enumerate() {
+        for (row, sum) in out.iter_mut().enumerate() {
+            *sum += value * mass[(row, column)];
         }
-        sum
-    };
-    let product = weigh(first, second).norm_sqr();
-    product / (weigh(first, first).re * weigh(second, second).re)
+    }
+    out
 }

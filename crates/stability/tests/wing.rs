@@ -198,7 +198,7 @@ fn pk_crossings_agree_with_the_truth() {
         .methods
         .pk
         .unwrap();
-    check_crossings(&wing, &result, 1e-6, "p-k");
+    check_crossings(&wing, &result, 1e-5, "p-k");
 }
 
 /// Refined on the closed form the crossings are exact, and so are the roots.
