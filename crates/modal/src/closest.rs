@@ -171,18 +171,24 @@ fn inside(face: &Face, at: Vector2<f64>, step: Vector2<f64>) -> Vector2<f64> {
     at + step * share
 }
 
-/// Steps back from collapsed corners, where the face has no normal.
+/// Steps back from collapsed corners, where the face has no normal, to the middle
+/// at last.
 fn regular(face: &Face, at: [f64; 2], positions: &[Vec3]) -> [f64; 2] {
     let middle = Vector2::from(face.middle());
     let mut at = Vector2::from(at);
     for _ in 0..40 {
-        let patch = face.point(at.into(), positions);
-        let (t, u) = (patch.tangent_r, patch.tangent_s);
-        let size = t.norm().max(u.norm());
-        if t.cross(&u).norm() > SMALLEST_ANGLE * size * size {
-            break;
+        if has_normal(face, at.into(), positions) {
+            return at.into();
         }
         at = middle + (at - middle) * 0.95;
     }
-    at.into()
+    middle.into()
+}
+
+/// The tangents span a plane there.
+pub(crate) fn has_normal(face: &Face, at: [f64; 2], positions: &[Vec3]) -> bool {
+    let patch = face.point(at, positions);
+    let (t, u) = (patch.tangent_r, patch.tangent_s);
+    let size = t.norm().max(u.norm());
+    t.cross(&u).norm() > SMALLEST_ANGLE * size * size
 }

@@ -13,7 +13,7 @@
 use crate::result::ModalResult;
 use crate::rigid::{Inertia, RigidBody};
 use fladder_mesh::Vec3;
-use nalgebra::{Matrix3, Matrix6, Vector6};
+use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 
 /// Share of a shape's norm that a rigid fit may leave in a rigid mode. Six
 /// printed digits leave 2e-5; elastic modes, orthogonal to rigid motion with
@@ -35,6 +35,10 @@ const STRAY_RESIDUAL: f64 = 0.3;
 /// Directions of rigid motion that the nodes cannot tell apart (nodes on one
 /// line) are those whose share of the normal matrix is under this.
 const RANK_TOLERANCE: f64 = 1e-12;
+
+/// A 6 × 6 symmetric matrix takes some twenty steps; positions so large that
+/// their squares overflow take for ever.
+const EIGEN_ITERATIONS: usize = 1000;
 
 /// Spread of the three translational masses above which the modes do not fit
 /// one body.
@@ -124,7 +128,10 @@ impl Basis {
             normal_block(3, 0, arm);
             normal_block(3, 3, -arm * arm);
         }
-        let eigen = normal.symmetric_eigen();
+        let Some(eigen) = SymmetricEigen::try_new(normal, f64::EPSILON, EIGEN_ITERATIONS)
+        else {
+            return Matrix6::zeros();
+        };
         let floor = RANK_TOLERANCE * eigen.eigenvalues.max();
         let inverted = eigen
             .eigenvalues
@@ -287,7 +294,8 @@ fn recover(
         }
         return None;
     }
-    let eigen = inverse_mass.symmetric_eigenvalues();
+    let eigen =
+        SymmetricEigen::try_new(inverse_mass, f64::EPSILON, EIGEN_ITERATIONS)?.eigenvalues;
     if eigen.min() <= RANK_TOLERANCE * eigen.max() {
         notes.push("the six rigid modes are not independent: no mass properties".to_owned());
         return None;

@@ -2,10 +2,10 @@
 //!
 //! Candidates are the faces of shells, or, where a structure has no shells, the
 //! faces of solids that belong to one solid alone. A candidate is skin when its
-//! middle is near the wetted surface and its normal is along the surface's
-//! there; webs, ribs and bulkheads end at the skin but stand across it.
+//! middle lies on the wetted surface, or near it with a normal along the
+//! surface's; webs, ribs and bulkheads end at the skin but stand across it.
 
-use crate::closest::FLAT_FACET;
+use crate::closest::{FLAT_FACET, has_normal};
 use crate::element::ElementKind;
 use crate::face::{Face, solid_faces};
 use crate::result::ModalResult;
@@ -23,6 +23,11 @@ const NORMAL_COSINE: f64 = 0.5;
 /// Distance of a skin face's middle from the surface relative to the square root
 /// of its area; a flat face on a curved surface stays well under this.
 const NEAR: f64 = 0.5;
+
+/// Distance, relative as above, at which a face is skin whatever its normal: the
+/// middle of a web is half its height away, which is more unless it is a hundred
+/// times as long as high. Strongly warped skin faces have useless normals.
+const ON: f64 = 0.05;
 
 /// The wetted surface, to be asked for its nearest triangle.
 pub(crate) struct SurfaceSearch {
@@ -87,11 +92,12 @@ fn lies_on(face: &Face, positions: &[Vec3], surface: &SurfaceSearch) -> bool {
     let middle = face.point(face.middle(), positions);
     let across = middle.tangent_r.cross(&middle.tangent_s);
     let (distance, normal) = surface.nearest(&middle.position);
-    distance <= NEAR * face.area(positions).sqrt()
-        && across.dot(&normal).abs() >= NORMAL_COSINE * across.norm()
+    let size = face.area(positions).sqrt();
+    let along = across.dot(&normal).abs() >= NORMAL_COSINE * across.norm();
+    distance <= ON * size || (distance <= NEAR * size && along)
 }
 
-/// Faces of some area that can be outer skin.
+/// Faces of some area, and with a normal in the middle, that can be outer skin.
 pub(crate) fn candidates(result: &ModalResult, positions: &[Vec3]) -> Vec<Face> {
     let shells: Vec<Face> = result
         .elements
@@ -108,7 +114,9 @@ pub(crate) fn candidates(result: &ModalResult, positions: &[Vec3]) -> Vec<Face> 
     } else {
         shells
     };
-    faces.retain(|face| face.area(positions) > 0.0);
+    faces.retain(|face| {
+        face.area(positions) > 0.0 && has_normal(face, face.middle(), positions)
+    });
     faces
 }
 

@@ -125,3 +125,58 @@ fn line() -> impl Strategy<Value = String> {
     ];
     word
 }
+
+/// Squares of such numbers overflow; nothing may hang or panic.
+#[test]
+fn enormous_numbers_end_in_an_answer() {
+    let mut result = common::wing().result();
+    let positions = result.positions();
+    for k in 0..7 {
+        let shape = positions
+            .iter()
+            .map(|p| p * 1e200 + Vec3::ith(k % 3, 1e300))
+            .collect();
+        result.modes.push(mode(k as u32 + 1, 0.0, 1e-300, shape));
+    }
+    for scale in [1.0, 1e200, 1e-200] {
+        let mut scaled = result.clone();
+        scaled
+            .nodes
+            .iter_mut()
+            .for_each(|node| node.position *= scale);
+        let survey = fladder_modal::survey(&scaled);
+        assert!(survey.recovered.is_none());
+        let mesh = common::surface();
+        let carried = fladder_modal::build_transfer(&scaled, &mesh, &common::mapping());
+        assert_eq!(carried.is_ok(), scale == 1.0);
+    }
+}
+
+/// Elements whose nodes coincide, cross over or lie on a line carry nothing.
+#[test]
+fn degenerate_elements_give_no_undefined_displacement() {
+    let mut result = common::wing().result();
+    let count = result.nodes.len() as u32;
+    for (k, element) in result.elements.iter_mut().enumerate() {
+        match k % 9 {
+            0 => element.nodes.fill(k as u32 % count),
+            1 => element.nodes.swap(0, 1),
+            2 => element.nodes.swap(5, 7),
+            3 => {
+                let first = element.nodes[0];
+                element.nodes[3] = first;
+                element.nodes[7] = first;
+            }
+            _ => {}
+        }
+    }
+    let mesh = common::surface();
+    let carried = fladder_modal::build_transfer(&result, &mesh, &common::mapping()).unwrap();
+    let rigid = |p: &Vec3| Vec3::new(1.0, 2.0, 3.0) + Vec3::new(0.3, 0.1, -0.2).cross(p);
+    let found = carried
+        .matrix
+        .displacement(&common::sample(&result.positions(), rigid));
+    let error = common::largest_error(&found, &common::sample(&mesh.vertices, rigid));
+    println!("rigid motion over degenerate elements: {error:.1e}");
+    assert!(error < 1e-11);
+}
