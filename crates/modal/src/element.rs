@@ -109,8 +109,7 @@ pub(crate) fn of_input_type(name: &str) -> Option<ElementKind> {
     })
 }
 
-/// Kind of a numbered `.frd` element type, and whether its last eight (brick)
-/// or six (wedge) midside nodes come with the upright edges before the top ones.
+/// Kind of a numbered `.frd` element type.
 ///
 /// Numbers from the CalculiX GraphiX manual, "Element Definition Block".
 pub(crate) fn of_frd_type(number: i64) -> Option<ElementKind> {

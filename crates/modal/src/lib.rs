@@ -1,4 +1,15 @@
 //! Finite-element modal results and their transfer to the wetted surface.
+//!
+//! From a result file to modes on a mesh: [`load`] reads it, brings it into SI
+//! units and mesh axes (x aft, y to starboard, z up), parts rigid from elastic
+//! modes by shape and normalises the elastic ones,
+//!
+//! $$ \varphi_i^T M \varphi_i = 1, \qquad \varphi_i^T K \varphi_i = \omega_i^2; $$
+//!
+//! [`transfer`] carries them to the wetted surface by one sparse matrix,
+//! `u = H q`, whose transpose carries forces back. [`rigid_modes`] makes the six
+//! rigid modes from mass properties, [`AnalyticMode::on`] modes from formulae.
+//! Nothing here knows of the flow, of case files or of terminals.
 
 mod analytic;
 mod axes_hint;

@@ -126,9 +126,13 @@ pub fn load(settings: &StructureSettings) -> Result<StructuralModel, StructureEr
     )?;
     let read = if settings.half { read.doubled() } else { read };
     let result = read.to_si_mesh_axes(settings.units, &settings.axes, &settings.origin);
-    let survey = survey(&result);
+    let mut survey = survey(&result);
+    if settings.half {
+        survey.recovered = survey.recovered.map(RecoveredBody::with_mirror_image);
+    }
     let mut notes = result.notes.clone();
     notes.extend(survey.notes.iter().cloned());
+    notes.extend(survey.recovered.as_ref().and_then(asymmetry));
     let rigid_body = rigid_body(&settings.rigid_body, &result, &survey, &mut notes)?;
     let elastic = elastic_modes(&result, &survey, rigid_body.as_ref(), &mut notes);
     let elastic = subset(elastic, settings.modes)?;
@@ -181,6 +185,21 @@ fn rigid_body(
     };
     body.check()?;
     Ok(Some(body))
+}
+
+/// Products of inertia across y = 0 above this share of the moment about z are
+/// named: the rigid modes have no place for them.
+const ASYMMETRY_LIMIT: f64 = 1e-3;
+
+fn asymmetry(recovered: &RecoveredBody) -> Option<String> {
+    let [xy, yz] = recovered.asymmetry;
+    let limit = ASYMMETRY_LIMIT * recovered.body.inertia.zz;
+    (xy.abs().max(yz.abs()) > limit).then(|| {
+        format!(
+            "the mass is not symmetric about y = 0: ∫ x y dm = {xy:.3e} and ∫ y z dm = {yz:.3e} \
+             kg m² are left out"
+        )
+    })
 }
 
 fn elastic_modes(

@@ -63,8 +63,24 @@ pub struct RecoveredBody {
     /// relative: what the printed digits leave.
     pub mass_spread: f64,
     /// ∫ x y dm and ∫ y z dm about the centre of mass; zero for a symmetric
-    /// aircraft.
+    /// aircraft, and not part of the rigid modes.
     pub asymmetry: [f64; 2],
+}
+
+impl RecoveredBody {
+    /// The whole of which the modes hold the half y ≥ 0 or y ≤ 0, once generalised
+    /// masses are doubled: the centre of mass moves to y = 0, and the distance of
+    /// each half from there adds to the moments about x and z.
+    #[must_use]
+    pub(crate) fn with_mirror_image(mut self) -> Self {
+        let RigidBody { mass, cg, inertia } = &mut self.body;
+        let added = *mass * cg.y * cg.y;
+        inertia.xx += added;
+        inertia.zz += added;
+        cg.y = 0.0;
+        self.asymmetry = [0.0; 2];
+        self
+    }
 }
 
 /// The rigid part of a whole result.

@@ -129,18 +129,24 @@ impl Axes {
         self.0 * vector
     }
 
-    /// Inertia in mesh axes; `None` if a product other than xz would appear
-    /// where the plane of symmetry is not y = 0 in both.
-    fn inertia(&self, inertia: &Inertia) -> Inertia {
+    /// Inertia in mesh axes, and the larger of its products xy and yz, which
+    /// [`Inertia`] has no place for: zero where y = 0 is the plane of symmetry in
+    /// both sets of axes.
+    fn inertia(&self, inertia: &Inertia) -> (Inertia, f64) {
         let Inertia { xx, yy, zz, xz } = *inertia;
-        let products = Matrix3::new(xx, 0.0, -xz, 0.0, yy, 0.0, -xz, 0.0, zz);
-        let turned = self.0 * products * self.0.transpose();
-        Inertia {
-            xx: turned[(0, 0)],
-            yy: turned[(1, 1)],
-            zz: turned[(2, 2)],
-            xz: -turned[(0, 2)],
-        }
+        let tensor = Matrix3::new(xx, 0.0, -xz, 0.0, yy, 0.0, -xz, 0.0, zz);
+        let turned = self.0 * tensor * self.0.transpose();
+        let [xx, yy, zz] = [turned[(0, 0)], turned[(1, 1)], turned[(2, 2)]];
+        let lost = turned[(0, 1)].abs().max(turned[(1, 2)].abs());
+        (
+            Inertia {
+                xx,
+                yy,
+                zz,
+                xz: -turned[(0, 2)],
+            },
+            lost,
+        )
     }
 }
 
@@ -163,20 +169,23 @@ impl ModalResult {
             let per_mass = units.mass();
             mode.participation = mode.participation.map(|p| axes.turn(&p) * per_mass);
         }
-        self.stated_mass = self.stated_mass.map(|body| {
+        if let Some(body) = self.stated_mass {
             let factor = units.mass() * units.length().powi(2);
-            let Inertia { xx, yy, zz, xz } = axes.inertia(&body.inertia);
-            RigidBody {
+            let (Inertia { xx, yy, zz, xz }, lost) = axes.inertia(&body.inertia);
+            if lost > 0.0 {
+                self.notes.push(format!(
+                    "a product of inertia of {:e} kg m² across the plane y = 0 of the mesh is \
+                     dropped",
+                    lost * factor
+                ));
+            }
+            let [xx, yy, zz, xz] = [xx, yy, zz, xz].map(|moment| moment * factor);
+            self.stated_mass = Some(RigidBody {
                 mass: body.mass * units.mass(),
                 cg: place(&body.cg),
-                inertia: Inertia {
-                    xx: xx * factor,
-                    yy: yy * factor,
-                    zz: zz * factor,
-                    xz: xz * factor,
-                },
-            }
-        });
+                inertia: Inertia { xx, yy, zz, xz },
+            });
+        }
         self
     }
 }

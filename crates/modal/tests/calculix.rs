@@ -459,3 +459,23 @@ fn bricks_of_twenty_nodes_come_in_input_order() {
     let expected: Vec<u32> = (0..12).chain(16..20).chain(12..16).collect();
     assert_eq!(read.elements[0].nodes, expected);
 }
+
+/// CalculiX's own file, decompressed and cut.
+#[test]
+fn the_result_of_a_real_run_cut_at_many_lengths_is_refused() {
+    use std::io::Read;
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../cases/scaneagle/modes.frd.gz");
+    let mut text = Vec::new();
+    flate2::read::GzDecoder::new(std::fs::File::open(path).unwrap())
+        .read_to_end(&mut text)
+        .unwrap();
+    assert_eq!(read("real", &text).unwrap().modes.len(), 26);
+    let whole = text.len() - "\n".len();
+    // Spread over the file, and every byte of its last two lines.
+    let lengths = (0..40).map(|k| k * whole / 40).chain(whole - 60..whole);
+    for length in lengths {
+        let failed = read("real_cut", &text[..length]).map(|read| read.modes.len());
+        assert!(failed.is_err(), "{length} of {whole} bytes");
+    }
+}

@@ -200,13 +200,69 @@ fn units_and_axes_of_the_file_do_not_show_in_the_model() {
     }
 }
 
+/// Two bodies, mirror images at y = ±2.1 m: Steiner's theorem.
 #[test]
-fn a_half_model_has_doubled_masses() {
+fn a_half_model_stands_for_itself_and_its_mirror_image() {
     let result = structure([1.0; 6]);
     let model = loaded("half", &result, |settings| settings.half = true).unwrap();
-    let whole = model.rigid_body.unwrap();
-    assert!((whole.mass / body().mass - 2.0).abs() < 1e-11);
+    let half = body();
+    let added = 2.0 * half.mass * half.cg.y.powi(2);
+    let Inertia { xx, yy, zz, xz } = half.inertia;
+    let whole = RigidBody {
+        mass: 2.0 * half.mass,
+        cg: Vec3::new(half.cg.x, 0.0, half.cg.z),
+        inertia: Inertia {
+            xx: 2.0 * xx + added,
+            yy: 2.0 * yy,
+            zz: 2.0 * zz + added,
+            xz: 2.0 * xz,
+        },
+    };
+    assert_body(&model.rigid_body.unwrap(), &whole, 1e-11);
     assert_eq!(model.elastic[1].generalised_mass, 8.0);
+}
+
+#[test]
+fn products_of_inertia_without_a_place_are_named() {
+    let mut result = structure([1.0; 6]);
+    result.stated_mass = Some(body());
+    let named = |model: &fladder_modal::StructuralModel| {
+        model
+            .notes
+            .iter()
+            .any(|note| note.contains("across the plane y = 0"))
+    };
+    assert!(!named(&loaded("products", &result, |_| {}).unwrap()));
+    let turned = loaded("products", &result, |settings| {
+        settings.axes = Axes::from_names(["y", "-x", "z"]).unwrap();
+    });
+    let turned = turned.unwrap();
+    assert!(named(&turned));
+    assert_eq!(turned.rigid_body.unwrap().inertia.xx, body().inertia.yy);
+}
+
+/// The fields of schema `fladder.modes/1`.
+#[test]
+fn the_summary_serialises_to_the_fields_scripts_read() {
+    let result = structure([1.0; 6]);
+    let path = file("summary", "model.frd", frd(&result));
+    let summary = fladder_modal::modes_summary(&path, None, None).unwrap();
+    let json = serde_json::to_value(&summary).unwrap();
+    assert_eq!(json["schema"], "fladder.modes/1");
+    assert_eq!(json["format"], "calculix-frd");
+    assert_eq!(json["nodes"], result.nodes.len());
+    assert_eq!(json["modes"][7]["index"], 8);
+    assert_eq!(json["modes"][7]["frequency_hz"], 12.0);
+    assert_eq!(json["modes"][7]["generalised_mass"], 4.0);
+    assert_eq!(
+        (&json["modes"][5]["rigid"], &json["modes"][7]["rigid"]),
+        (&true.into(), &false.into())
+    );
+    assert!((json["mass"].as_f64().unwrap() / body().mass - 1.0).abs() < 1e-4);
+    assert!((json["cg"][1].as_f64().unwrap() - body().cg.y).abs() < 1e-3);
+    for key in ["xx", "yy", "zz", "xz"] {
+        assert!(json["inertia"][key].is_number(), "{key}");
+    }
 }
 
 #[test]
