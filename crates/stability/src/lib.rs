@@ -14,6 +14,7 @@
 
 mod aerodynamics;
 mod assignment;
+mod count;
 mod crossing;
 mod divergence;
 mod eigenpair;
@@ -25,11 +26,13 @@ mod p2;
 mod pk;
 mod polish;
 mod rational;
+mod refined;
 mod report;
 mod resolvers;
 mod results;
 mod rigid;
 mod spline;
+mod state_space;
 mod static_sweep;
 mod structure;
 mod sweep;

@@ -13,6 +13,7 @@ use crate::gaf::GafTable;
 use crate::linalg::NoConvergence;
 use crate::p2::PiecewiseQuadratic;
 use crate::pk::PkForm;
+use crate::refined::refined_roots;
 use crate::report::Reporter;
 use crate::resolvers::{P2Resolver, PkResolver, PolishedResolver};
 use crate::results::{MethodResult, Methods, SCHEMA, SweepResult};
@@ -239,22 +240,16 @@ impl Run<'_> {
 
     fn polished(&self, smooth: &dyn Aerodynamics) -> Result<MethodResult, SweepError> {
         let sweep = self.sweep;
-        let region = sweep.fit.region();
-        let solved = self.at_every_speed(|reduced| {
-            let (found, zeros) = crate::p2::candidates(sweep.fit, reduced, SEED_TOLERANCE)?;
-            let seeds: Vec<c64> = found.iter().map(|candidate| candidate.p).collect();
-            let mut roots = crate::polish::polish_all(reduced, smooth, &seeds);
-            roots.retain(|root| region.holds(root.p));
-            Ok((roots, zeros))
-        })?;
-        let (roots, zeros) = solved.into_iter().unzip();
-        let complete = Some(vec![false; self.points.len()]);
+        let solved =
+            self.at_every_speed(|reduced| refined_roots(reduced, sweep.fit, smooth))?;
+        let complete = solved.iter().map(|speed| speed.is_complete).collect();
+        let (roots, zeros) = solved.into_iter().map(|s| (s.roots, s.zeros)).unzip();
         let resolver = PolishedResolver { sweep, smooth };
         Ok(self.finish(
             &Solved {
                 roots,
                 zeros,
-                complete,
+                complete: Some(complete),
             },
             &resolver,
         ))
@@ -308,9 +303,6 @@ impl Run<'_> {
         result
     }
 }
-
-/// Candidates this far outside their cell are worth a refinement.
-const SEED_TOLERANCE: f64 = 0.5;
 
 fn crossings(tracks: &[Track], resolver: &dyn Resolver) -> Vec<Found> {
     tracks

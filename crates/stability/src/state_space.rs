@@ -1,0 +1,91 @@
+//! All roots of a rational model at once.
+//!
+//! With $Q = Q_0 + R_1p + R_2p^2 + \sum_jR_{2+j}\,p/(p-a_j)$ and lag states
+//! $\dot w_j = a_jw_j + \dot x$ the problem is linear in the states
+//! $(x, v, w)$: one standard eigenproblem of order $n(2 + m)$, dear but
+//! complete. It gives the seeds where the count says that a root is missing.
+
+use faer::{Mat, c64};
+
+use crate::linalg::{Lu, NoConvergence, eigenvalues_real};
+use crate::rational::{Pole, RationalFit};
+use crate::structure::{Hysteresis, Reduced};
+
+/// Every root of the rational model with $\operatorname{Im}p\ge0$, without
+/// hysteretic damping.
+pub(crate) fn all_roots(
+    reduced: &Reduced,
+    fit: &RationalFit,
+) -> Result<Vec<c64>, NoConvergence> {
+    let order = reduced.order();
+    let loads = |matrix: &Mat<f64>| {
+        reduced.loads(&Mat::from_fn(order, order, |i, j| {
+            c64::new(matrix[(i, j)], 0.0)
+        }))
+    };
+    let coefficients: Vec<Mat<c64>> = fit.coefficients().iter().map(loads).collect();
+    let (rest, lags) = (loads(fit.at_rest()), coefficients.len() - 2);
+    let stiffness = reduced.stiffness(Hysteresis::LeftOut);
+    let size = order * (2 + lags);
+    let mut right = Mat::from_fn(order, size, |i, column| {
+        let (block, j) = (column / order, column % order);
+        match block {
+            0 => rest[(i, j)] - stiffness[(i, j)],
+            1 => coefficients[0][(i, j)] - reduced.damping[(i, j)],
+            _ => coefficients[block][(i, j)] * lag_factor(fit, block - 2),
+        }
+    });
+    let leading = Mat::from_fn(order, order, |i, j| {
+        reduced.mass[(i, j)] - coefficients[1][(i, j)]
+    });
+    Lu::new(leading).solve(right.as_mut());
+    let mut matrix = Mat::<f64>::zeros(size, size);
+    for j in 0..size {
+        for i in 0..order {
+            matrix[(order + i, j)] = right[(i, j)].re;
+        }
+    }
+    for i in 0..order {
+        matrix[(i, order + i)] = 1.0;
+    }
+    fill_lags(&mut matrix, fit, order);
+    let values = eigenvalues_real(matrix.as_ref())?;
+    Ok(values.into_iter().filter(|value| value.im >= 0.0).collect())
+}
+
+/// The pair functions are $w+\bar w$ and $\mathrm i(w-\bar w)$: twice the real
+/// part and minus twice the imaginary part of the lag.
+fn lag_factor(fit: &RationalFit, lag: usize) -> f64 {
+    let mut factors = Vec::new();
+    for pole in fit.pole_list() {
+        match pole {
+            Pole::Real(_) => factors.push(1.0),
+            Pole::Pair(_) => factors.extend([2.0, -2.0]),
+        }
+    }
+    factors[lag]
+}
+
+fn fill_lags(matrix: &mut Mat<f64>, fit: &RationalFit, order: usize) {
+    let mut block = 2;
+    for pole in fit.pole_list() {
+        for i in 0..order {
+            let at = block * order + i;
+            matrix[(at, order + i)] = 1.0;
+            match *pole {
+                Pole::Real(a) => matrix[(at, at)] = a,
+                Pole::Pair(a) => {
+                    let beside = at + order;
+                    matrix[(at, at)] = a.re;
+                    matrix[(at, beside)] = -a.im;
+                    matrix[(beside, at)] = a.im;
+                    matrix[(beside, beside)] = a.re;
+                }
+            }
+        }
+        block += match pole {
+            Pole::Real(_) => 1,
+            Pole::Pair(_) => 2,
+        };
+    }
+}
