@@ -257,6 +257,14 @@ fn surface(mesh: &Mesh, beta_deg: f64, at: &At<'_>) -> Checked {
             "set beta_deg = 0, or mesh the whole aircraft with symmetry = \"none\"",
         ));
     }
+    if mesh.symmetry != Symmetry::None {
+        return Err(at.refuse(
+            "mesh.symmetry",
+            "half models are not computed yet",
+            "the half would be taken for a whole aircraft, open at y = 0",
+            "mesh the whole aircraft and set symmetry = \"none\"",
+        ));
+    }
     let edges = &mesh.trailing_edge;
     if !(edges.max_wedge_deg > 0.0 && edges.max_wedge_deg < 180.0) {
         return Err(at.refuse(

@@ -22,6 +22,14 @@ pub(super) fn structure(given: &Structure, at: &At<'_>) -> Checked {
             "write for example modes = [1, 20]",
         ));
     }
+    if let (Some(_), Some(_)) = (&given.damping, &given.matrices) {
+        return Err(at.refuse(
+            "structure.damping",
+            "`structure.damping` is given beside [structure.matrices]",
+            "the matrices are taken as they are, so the coefficient would have no effect",
+            "put the damping into structure.matrices.damping",
+        ));
+    }
     if let Some(damping) = &given.damping {
         damping
             .as_slice()

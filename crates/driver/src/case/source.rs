@@ -115,7 +115,7 @@ fn syntax(error: &toml::de::Error, places: &Places) -> Failure {
 /// Turns a fault found while the values were read into a message.
 pub(crate) fn wrong_value(error: &toml::de::Error, places: &Places) -> Failure {
     let position = error.span().map_or(0, |span| span.start);
-    let message = error.message();
+    let message = in_words(error.message().trim_end());
     let (why, remedy) = if message.starts_with("missing field") {
         (
             "this key has no default that could be right",
@@ -127,12 +127,20 @@ pub(crate) fn wrong_value(error: &toml::de::Error, places: &Places) -> Failure {
             "give a value of the kind that is named",
         )
     };
-    Failure::input(
-        message.trim_end().to_owned(),
-        places.of_position(position),
-        why,
-        remedy,
-    )
+    Failure::input(message, places.of_position(position), why, remedy)
+}
+
+/// Names of types in the words of the case file.
+fn in_words(message: &str) -> String {
+    const WORDS: [(&str, &str); 5] = [
+        ("expected f64", "expected a number"),
+        ("expected usize", "expected a whole number of at least 0"),
+        ("expected u32", "expected a whole number of at least 0"),
+        ("expected a sequence", "expected a list"),
+        ("expected a map", "expected a table"),
+    ];
+    let replace = |text: String, (code, word): &(&str, &str)| text.replace(code, word);
+    WORDS.iter().fold(message.to_owned(), replace)
 }
 
 /// `key=value` with the value as TOML, or as a bare string.

@@ -47,6 +47,21 @@ pub(crate) fn sweep(
     Ok(())
 }
 
+/// The options that enter the key or name the cache, as they were given.
+fn options(session: &Session) -> String {
+    let cache = session
+        .common
+        .cache
+        .iter()
+        .map(|folder| format!(" --cache {}", folder.display()));
+    let set = session
+        .common
+        .set
+        .iter()
+        .map(|given| format!(" --set '{given}'"));
+    cache.chain(set).collect()
+}
+
 fn stored(
     session: &Session,
     path: &Path,
@@ -57,13 +72,16 @@ fn stored(
     let key = own_forces::key(file, &own_forces::problem(file, aircraft));
     own_forces::cached(&Cache::existing(&folder), key).ok_or_else(|| {
         Failure::input(
-            format!("the forces of this case are not in the cache (key {})", key.to_hex()),
+            format!(
+                "the forces of this case are not in the cache (key {})",
+                key.to_hex()
+            ),
             folder.display().to_string(),
             "`sweep` never computes forces: it would take minutes where seconds are expected",
             format!(
-                "make them with `fladder gaf {}` and the same --set and --cache, or use `fladder \
-                 run`",
-                path.display()
+                "make them with `fladder gaf {}{}`",
+                path.display(),
+                options(session)
             ),
         )
     })
