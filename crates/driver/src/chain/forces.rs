@@ -7,10 +7,7 @@ use crate::case::CaseFile;
 use crate::failure::Failure;
 use crate::gaf_json::{self, Document, Frame, Given};
 use faer::{Mat, c64};
-use fladder_bem::TransferModel;
-use fladder_stability::{
-    self as stability, Aerodynamics, GafPoint, GafTable, PiecewiseQuadratic,
-};
+use fladder_stability::{self as stability, GafPoint, GafTable};
 use std::path::PathBuf;
 
 /// Samples of $Q$ with all that belongs to them.
@@ -21,8 +18,6 @@ pub(crate) struct Forces {
     /// Incidence and sideslip they hold for, rad.
     pub(crate) alpha: f64,
     pub(crate) beta: f64,
-    /// Where $Q$ can be evaluated anywhere.
-    pub(crate) transfer: Option<TransferModel>,
     /// Sentences for the user.
     pub(crate) notes: Vec<String>,
 }
@@ -35,7 +30,6 @@ impl Forces {
     pub(crate) fn own(
         file: &CaseFile,
         aircraft: &Aircraft,
-        forces: &OwnForces,
         document: &Document,
     ) -> Result<Self, Failure> {
         let order = aircraft.swept_modes(file);
@@ -68,7 +62,6 @@ impl Forces {
         let made = Self {
             alpha: document.alpha_deg.to_radians(),
             beta: document.beta_deg.to_radians(),
-            transfer: Some(forces.stored.solution.transfer.clone()),
             notes: Vec::new(),
             table,
         };
@@ -124,7 +117,6 @@ impl Forces {
             table: given.table,
             alpha: alpha_deg.to_radians(),
             beta: beta_deg.to_radians(),
-            transfer: None,
             notes: vec![format!("forces from {place}")],
         };
         made.in_body_frame(file, structure, &given.frames)
@@ -218,46 +210,6 @@ fn angle(file: &CaseFile, key: &str, stated: f64, theirs: f64) -> Result<f64, Fa
         "leave the key out, or give forces of that incidence",
     ))
 }
-
-/// $Q(p)$ itself of the swept modes, which come first, with the derivative of the piecewise quadratic: the Newton
-/// iteration converges to the roots of the exact $Q$ whatever the slope, and
-/// evaluating $Q$ is what costs.
-pub(crate) struct ExactForces<'a> {
-    pub(crate) transfer: &'a TransferModel,
-    pub(crate) fit: &'a PiecewiseQuadratic,
-}
-
-impl Aerodynamics for ExactForces<'_> {
-    fn order(&self) -> usize {
-        self.fit.order()
-    }
-
-    /// On the branch cut the real part of the limit from above is taken; at a
-    /// pole every entry is NaN, which no iteration takes for a root.
-    fn q(&self, p: c64) -> Mat<c64> {
-        let on_cut = p.im == 0.0 && p.re < 0.0;
-        let at = if on_cut {
-            c64::new(p.re, BESIDE_CUT * -p.re)
-        } else {
-            p
-        };
-        let order = self.order();
-        match self.transfer.q(at) {
-            Ok(q) if on_cut => Mat::from_fn(order, order, |i, j| c64::new(q[(i, j)].re, 0.0)),
-            Ok(q) => q.submatrix(0, 0, order, order).to_owned(),
-            Err(_) => Mat::from_fn(order, order, |_, _| c64::new(f64::NAN, f64::NAN)),
-        }
-    }
-
-    fn q_and_slope(&self, p: c64) -> (Mat<c64>, Mat<c64>) {
-        let (_, slope) = self.fit.q_and_slope(p);
-        (self.q(p), slope)
-    }
-}
-
-/// Distance from the cut relative to $|g|$ at which its limit is taken; the
-/// forces change by as little.
-const BESIDE_CUT: f64 = 1e-12;
 
 impl From<Frame> for stability::Frame {
     fn from(frame: Frame) -> Self {

@@ -4,6 +4,7 @@ pub(crate) mod aircraft;
 pub(crate) mod forces;
 pub(crate) mod memory;
 pub(crate) mod own_forces;
+pub(crate) mod smooth;
 pub(crate) mod structure;
 pub(crate) mod surface;
 pub(crate) mod sweep;

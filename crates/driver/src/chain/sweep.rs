@@ -1,6 +1,7 @@
 //! Roots over the speeds of the case.
 
-use super::forces::{ExactForces, Forces};
+use super::forces::Forces;
+use super::smooth::smooth;
 use super::structure::{StructureData, system};
 use crate::atmosphere;
 use crate::case::{self, CaseFile};
@@ -8,8 +9,8 @@ use crate::cli::Method;
 use crate::failure::Failure;
 use crate::terminal::{Bar, Console};
 use fladder_stability::{
-    self as stability, Aerodynamics, DEFAULT_DAMPING_LIMIT, OperatingPoint, PiecewiseQuadratic,
-    PkForm, Sweep, SweepError, SweepResult, System,
+    self as stability, DEFAULT_DAMPING_LIMIT, OperatingPoint, PiecewiseQuadratic, PkForm,
+    Sweep, SweepError, SweepResult, System,
 };
 
 /// Air density of the case, kg/m³.
@@ -75,17 +76,14 @@ pub(crate) fn run(
             ..OperatingPoint::new(*speed, density)
         })
         .collect();
-    let exact = forces.transfer.as_ref().map(|transfer| ExactForces {
-        transfer,
-        fit: &fit,
-    });
-    let smooth: &dyn Aerodynamics = exact.as_ref().map_or(&fit, |exact| exact);
+    let (smooth, notes) = smooth(&forces.table).map_err(|error| unfit(file, &error))?;
+    console.notes(&notes);
     let sweep = Sweep {
         structure: &system,
         schedule: &points,
         table: &forces.table,
         fit: &fit,
-        smooth: Some(smooth),
+        smooth: Some(&smooth),
         method: method.into(),
         pk_form: PkForm::default(),
     };
