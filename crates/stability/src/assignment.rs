@@ -81,7 +81,7 @@ mod tests {
         let mut best = f64::INFINITY;
         let mut order = vec![0, 1, 2, 3, 4];
         permutations(&mut order, 0, &mut |columns| {
-            best = best.min(total(columns))
+            best = best.min(total(columns));
         });
         assert!((found - best).abs() < 1e-12, "{found} != {best}");
     }

@@ -240,24 +240,27 @@ mod tests {
         roots
     }
 
+    /// No aerodynamics, with a pole far to the left.
+    struct Still;
+
+    impl Aerodynamics for Still {
+        fn order(&self) -> usize {
+            5
+        }
+        fn q(&self, _: c64) -> Mat<c64> {
+            Mat::zeros(5, 5)
+        }
+        fn rightmost_pole(&self) -> Option<f64> {
+            Some(-1.0)
+        }
+    }
+
     /// The full list passes; a root taken out, complex or real, is missed
     /// once or twice; a false one is noticed too.
     #[test]
     fn every_change_of_the_list_is_noticed() {
         let structure = Oscillators((0..5).map(|i| i.to_string()).collect());
         let reduced = Reduced::new(&structure, &OperatingPoint::new(1.0, 1.0), 1.0);
-        struct Still;
-        impl Aerodynamics for Still {
-            fn order(&self) -> usize {
-                5
-            }
-            fn q(&self, _: c64) -> Mat<c64> {
-                Mat::zeros(5, 5)
-            }
-            fn rightmost_pole(&self) -> Option<f64> {
-                Some(-1.0)
-            }
-        }
         let region = Region {
             g: [-0.2, 0.2],
             k_max: 1.5,

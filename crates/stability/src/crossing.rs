@@ -142,9 +142,9 @@ pub(crate) fn locate(bracket: &Bracketed, resolver: &dyn Resolver) -> Option<Fou
         }
         last_side = Some(side);
         if is_high {
-            high = (parameter, pair)
+            high = (parameter, pair);
         } else {
-            low = (parameter, pair)
+            low = (parameter, pair);
         }
     }
     let jump = (high.1.p.re - low.1.p.re).abs() / high.1.p.norm();

@@ -214,11 +214,7 @@ pub(crate) fn inner(left: &[c64], right: &[c64]) -> c64 {
 
 /// Euclidean length.
 pub(crate) fn length(vector: &[c64]) -> f64 {
-    vector
-        .iter()
-        .map(|value| value.norm_sqr())
-        .sum::<f64>()
-        .sqrt()
+    vector.iter().map(c64::norm_sqr).sum::<f64>().sqrt()
 }
 
 /// Largest magnitude among the entries.

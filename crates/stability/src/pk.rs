@@ -159,14 +159,16 @@ impl PkProblem<'_> {
             .collect::<Result<_, _>>()?;
         let mut brackets = Vec::new();
         for branch in 0..self.reduced.order() {
-            for step in 0..grid.len() - 1 {
-                let bracket = Bracket::new(
-                    branch,
-                    (grid[step], scan[step][branch]),
-                    (grid[step + 1], scan[step + 1][branch]),
-                );
-                brackets.extend(bracket);
-            }
+            let places: Vec<(f64, c64)> = grid
+                .iter()
+                .zip(&scan)
+                .map(|(&k, values)| (k, values[branch]))
+                .collect();
+            brackets.extend(
+                places
+                    .windows(2)
+                    .filter_map(|ends| Bracket::new(branch, ends[0], ends[1])),
+            );
         }
         let mut roots: Vec<Eigenpair> = Vec::with_capacity(brackets.len());
         for bracket in &brackets {
@@ -221,9 +223,9 @@ impl PkProblem<'_> {
                 return (p.im >= bracket.low && p.im <= bracket.high).then_some(pair);
             }
             if (miss > 0.0) == bracket.is_falling {
-                low = k
+                low = k;
             } else {
-                high = k
+                high = k;
             }
             let slope = self.root_slope(k, &pencil, &pair);
             let mut next = k - miss / (slope.im - 1.0);
@@ -329,7 +331,11 @@ impl PkProblem<'_> {
                 weights[1 - side] *= 0.5;
             }
             last_side = side;
-            if side == 0 { low = k } else { high = k }
+            if side == 0 {
+                low = k;
+            } else {
+                high = k;
+            }
         }
         Ok(None)
     }

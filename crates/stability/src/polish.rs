@@ -49,7 +49,9 @@ pub(crate) fn polish(
         None => inverse_iteration(p, reduced.operator(p, &q, hysteresis)).right,
     };
     let scale = turned_to_unit(&x);
-    x.iter_mut().for_each(|value| *value *= scale);
+    for value in &mut x {
+        *value *= scale;
+    }
     let anchor = x.clone();
     let mut last_step = f64::INFINITY;
     for _ in 0..MAX_STEPS {

@@ -88,7 +88,7 @@ impl RigidBody {
             }
         }
         let limit = (self.ixx * self.izz).sqrt();
-        if !(self.ixz.abs() < limit) {
+        if self.ixz.is_nan() || self.ixz.abs() >= limit {
             return Err(RigidBodyError::Product {
                 ixz: self.ixz,
                 limit,

@@ -56,9 +56,9 @@ fn change_of_sign(function: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) ->
     for _ in 0..HALVINGS {
         let middle = f64::midpoint(low, high);
         if (function(middle) > 0.0) == is_positive {
-            high = middle
+            high = middle;
         } else {
-            low = middle
+            low = middle;
         }
     }
     f64::midpoint(low, high)

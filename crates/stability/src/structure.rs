@@ -48,6 +48,7 @@ impl OperatingPoint {
     }
 
     /// Point between two others, every number linear in `fraction`.
+    #[must_use]
     pub fn between(&self, other: &Self, fraction: f64) -> Self {
         let blend = |from: f64, to: f64| from + fraction * (to - from);
         let optional = |from: Option<f64>, to: Option<f64>| Some(blend(from?, to?));

@@ -112,8 +112,7 @@ impl Sweep<'_> {
     /// Number of calls of [`Progress::advance`] in a whole run.
     pub fn steps(&self) -> usize {
         let methods = match self.method {
-            Method::P2 => 1,
-            Method::Pk => 1,
+            Method::P2 | Method::Pk => 1,
             Method::Both => 2,
         };
         let polished = usize::from(self.smooth.is_some() && self.method != Method::Pk);

@@ -211,6 +211,7 @@ impl System {
 
     /// Makes the rigid modes those of a body: writes its mass matrix and adds
     /// the rotation-rate terms at every flight condition.
+    #[must_use]
     pub fn with_rigid_body(mut self, body: RigidBody) -> Self {
         let block = body.mass_matrix();
         for (i, row) in block.iter().enumerate() {

@@ -352,3 +352,63 @@ fn polished_roots_from_samples_are_complete() {
     let result = sweep(&wing, range(20.0, 75.0, 56), Method::P2, Some(&fit));
     check_crossings(&wing, &result.methods.polished.unwrap(), 1e-8, "rational");
 }
+
+/// With samples at g = 0, ±0.04, ±0.1, ±0.2 the roots away from the axis are
+/// better than from the axis alone, and those near it no worse.
+#[test]
+fn samples_off_the_axis_improve_damped_roots() {
+    let wing = Wing::read();
+    let schedule = speeds(truth_speeds(&wing), wing.density());
+    let table = wing.table(&[0.0, -0.04, 0.04, -0.1, 0.1, -0.2, 0.2]);
+    let run = |fit: &PiecewiseQuadratic| {
+        println!("{:?}", fit.report());
+        let sweep = Sweep {
+            structure: &wing,
+            schedule: &schedule,
+            table: &table,
+            fit,
+            smooth: None,
+            method: Method::P2,
+            pk_form: PkForm::Complex,
+        };
+        sweep.run(&()).unwrap().methods.p2.unwrap()
+    };
+    let outcomes = [
+        (
+            "centred",
+            run(&PiecewiseQuadratic::centred(&table, 0.2).unwrap()),
+        ),
+        ("laplace", run(&PiecewiseQuadratic::of(&table).unwrap())),
+        (
+            "literal",
+            run(&PiecewiseQuadratic::literal(&table, 0.2).unwrap()),
+        ),
+    ];
+    let bands: [(&str, fn(c64) -> bool); 3] = [
+        ("near", |p| p.re.abs() < 0.02 && p.im > 0.05 && p.im < 1.5),
+        ("far", |p| {
+            p.re.abs() > 0.06 && p.re.abs() < 0.19 && p.im > 0.05 && p.im < 1.5
+        }),
+        ("real", |p| {
+            p.im == 0.0 && p.re.abs() > 0.05 && p.re.abs() < 0.19
+        }),
+    ];
+    let mut table = Vec::new();
+    for (name, outcome) in &outcomes {
+        for (band, wanted) in bands {
+            let errors = errors(&wing, outcome, wanted);
+            let (median, worst) = (errors[errors.len() / 2], errors[errors.len() - 1]);
+            println!(
+                "{name} {band}: {} roots, median {median:.1e}, largest {worst:.1e}",
+                errors.len()
+            );
+            table.push(median);
+        }
+        println!("{name}: zero roots {:?}", outcome.zero_roots);
+    }
+    assert!(table[3] <= table[0] * 1.001);
+    assert!(table[4] < 0.3 * table[1]);
+    assert!(table[5] < 0.3 * table[2]);
+    assert!(table[6] > 10.0 * table[0]);
+    assert!(outcomes[1].1.zero_roots.iter().all(|zeros| *zeros == 4));
+}

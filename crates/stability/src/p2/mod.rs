@@ -6,6 +6,9 @@
 //! rectangle, without iteration. Eller, IFASD-2009-119, sec. 2.
 
 mod axis;
+mod laplace;
+mod literal;
+mod patches;
 mod roots;
 
 pub use roots::Candidate;
@@ -122,7 +125,45 @@ impl PiecewiseQuadratic {
         axis::fit(table, damping_limit)
     }
 
-    /// The rectangles, by rising $k$.
+    /// Rectangles for a grid in $g$ and $k$; the inner column $|g|\le0.05$ is
+    /// that of [`centred`](Self::centred).
+    ///
+    /// Roots with $g < -0.05$ come out ten to a hundred times better than from
+    /// samples on the axis alone. The region is that of the samples.
+    ///
+    /// # Errors
+    /// A decomposition that fails.
+    pub fn laplace(table: &GafTable) -> Result<Self, FitError> {
+        laplace::fit(table)
+    }
+
+    /// The fit as the paper words it, from samples on the axis, for
+    /// comparison: not continuous enough to place a flutter point better than
+    /// 0.3 %.
+    ///
+    /// # Errors
+    /// As [`centred`](Self::centred).
+    pub fn literal(table: &GafTable, damping_limit: f64) -> Result<Self, FitError> {
+        if !(damping_limit > 0.0 && damping_limit.is_finite()) {
+            return Err(FitError::DampingLimit(damping_limit));
+        }
+        literal::fit(table, damping_limit)
+    }
+
+    /// [`laplace`](Self::laplace) where the table has samples off the axis,
+    /// [`centred`](Self::centred) up to [`DEFAULT_DAMPING_LIMIT`] otherwise.
+    ///
+    /// # Errors
+    /// A decomposition that fails.
+    pub fn of(table: &GafTable) -> Result<Self, FitError> {
+        if table.g().len() > 1 {
+            Self::laplace(table)
+        } else {
+            Self::centred(table, DEFAULT_DAMPING_LIMIT)
+        }
+    }
+
+    /// The rectangles.
     pub fn cells(&self) -> &[Cell] {
         &self.cells
     }

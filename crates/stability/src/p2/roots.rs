@@ -67,9 +67,10 @@ pub(crate) fn cell_eigenvalues(
         (0..order).collect()
     };
     let a2 = Mat::from_fn(order, order, |i, j| reduced.mass[(i, j)] - q2[(i, j)]);
-    let mut right = Mat::from_fn(order, kept.len() + order, |i, j| match kept.get(j) {
-        Some(&mode) => -a0[(i, mode)],
-        None => {
+    let mut right = Mat::from_fn(order, kept.len() + order, |i, j| {
+        if let Some(&mode) = kept.get(j) {
+            -a0[(i, mode)]
+        } else {
             let mode = j - kept.len();
             q1[(i, mode)] - reduced.damping[(i, mode)]
         }
@@ -120,14 +121,18 @@ pub(crate) fn candidates(
     let (mut found, mut zeros) = (Vec::new(), 0);
     for (index, cell) in fit.cells.iter().enumerate() {
         let roots = cell_eigenvalues(cell, reduced)?;
-        zeros += roots.zeros;
-        for p in roots.values {
-            if cell.is_mirrored && p.norm() < ZERO_ROOT {
-                zeros += 1;
-            } else {
-                found.extend(accept(cell, index, p, tolerance));
-            }
+        let is_home = cell.is_mirrored && cell.g[0] < 0.0 && cell.g[1] > 0.0;
+        let is_zero = |p: &&c64| p.norm() < ZERO_ROOT;
+        if is_home {
+            zeros += roots.zeros + roots.values.iter().filter(is_zero).count();
         }
+        found.extend(
+            roots
+                .values
+                .into_iter()
+                .filter(|p| !is_zero(&p))
+                .filter_map(|p| accept(cell, index, p, tolerance)),
+        );
     }
     Ok((found, zeros))
 }
