@@ -77,6 +77,20 @@ pub struct Stability {
     /// Whether the Mach number follows the speed.
     #[serde(default)]
     pub matched: bool,
+    /// On which forces roots are refined.
+    #[serde(default)]
+    pub refine: Refine,
+}
+
+/// On which forces roots are refined.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Refine {
+    /// A rational model of the samples.
+    #[default]
+    Model,
+    /// The computed forces themselves, at every step: slower.
+    Exact,
 }
 
 /// Airspeeds as a range or a list.

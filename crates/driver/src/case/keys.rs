@@ -69,6 +69,7 @@ pub(crate) const KEYS: &[&str] = &[
     "stability.altitude.to",
     "stability.altitude.count",
     "stability.matched",
+    "stability.refine",
 ];
 
 /// Whether a concrete path (array indices already as `[]`) is a known key or

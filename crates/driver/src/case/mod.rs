@@ -14,7 +14,7 @@ pub use aerodynamics::{
     AnalyticMode, Axis, Flow, Gaf, Mesh, Modes, Reference, Rotation, Symmetry, Term,
     TrailingEdges, Wake, WakeDirection, WakeMode,
 };
-pub use flight::{Flight, Range, Speeds, Stability, Thrust, Trim};
+pub use flight::{Flight, Range, Refine, Speeds, Stability, Thrust, Trim};
 pub use one_or_many::OneOrMany;
 pub use source::Places;
 pub use structure::{DampingModel, Inertia, Matrices, RigidBody, Structure, Units};

@@ -7,6 +7,7 @@ use crate::case::CaseFile;
 use crate::failure::Failure;
 use crate::gaf_json::{self, Document, Frame, Given};
 use faer::{Mat, c64};
+use fladder_bem::TransferModel;
 use fladder_stability::{self as stability, GafPoint, GafTable};
 use std::path::PathBuf;
 
@@ -18,6 +19,8 @@ pub(crate) struct Forces {
     /// Incidence and sideslip they hold for, rad.
     pub(crate) alpha: f64,
     pub(crate) beta: f64,
+    /// Where $Q$ can be evaluated anywhere, if it can.
+    pub(crate) transfer: Option<TransferModel>,
     /// Sentences for the user.
     pub(crate) notes: Vec<String>,
 }
@@ -30,6 +33,7 @@ impl Forces {
     pub(crate) fn own(
         file: &CaseFile,
         aircraft: &Aircraft,
+        forces: &OwnForces,
         document: &Document,
     ) -> Result<Self, Failure> {
         let order = aircraft.swept_modes(file);
@@ -62,6 +66,7 @@ impl Forces {
         let made = Self {
             alpha: document.alpha_deg.to_radians(),
             beta: document.beta_deg.to_radians(),
+            transfer: Some(forces.stored.solution.transfer.clone()),
             notes: Vec::new(),
             table,
         };
@@ -117,6 +122,7 @@ impl Forces {
             table: given.table,
             alpha: alpha_deg.to_radians(),
             beta: beta_deg.to_radians(),
+            transfer: None,
             notes: vec![format!("forces from {place}")],
         };
         made.in_body_frame(file, structure, &given.frames)

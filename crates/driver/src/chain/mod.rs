@@ -1,6 +1,7 @@
 //! From a case to roots: surface, modes, forces, sweep.
 
 pub(crate) mod aircraft;
+pub(crate) mod exact;
 pub(crate) mod forces;
 pub(crate) mod memory;
 pub(crate) mod own_forces;

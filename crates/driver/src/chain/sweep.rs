@@ -1,16 +1,17 @@
 //! Roots over the speeds of the case.
 
+use super::exact::ExactForces;
 use super::forces::Forces;
 use super::smooth::smooth;
 use super::structure::{StructureData, system};
 use crate::atmosphere;
-use crate::case::{self, CaseFile};
+use crate::case::{self, CaseFile, Refine};
 use crate::cli::Method;
 use crate::failure::Failure;
 use crate::terminal::{Bar, Console};
 use fladder_stability::{
-    self as stability, DEFAULT_DAMPING_LIMIT, OperatingPoint, PiecewiseQuadratic, PkForm,
-    Sweep, SweepError, SweepResult, System,
+    self as stability, Aerodynamics, DEFAULT_DAMPING_LIMIT, OperatingPoint, PiecewiseQuadratic,
+    PkForm, RationalFit, Sweep, SweepError, SweepResult, System,
 };
 
 /// Air density of the case, kg/m³.
@@ -78,12 +79,17 @@ pub(crate) fn run(
         .collect();
     let (smooth, notes) = smooth(&forces.table).map_err(|error| unfit(file, &error))?;
     console.notes(&notes);
+    let exact = exact_forces(file, forces, &smooth)?;
     let sweep = Sweep {
         structure: &system,
         schedule: &points,
         table: &forces.table,
         fit: &fit,
-        smooth: Some(&smooth),
+        smooth: Some(
+            exact
+                .as_ref()
+                .map_or(&smooth, |exact| exact as &dyn Aerodynamics),
+        ),
         method: method.into(),
         pk_form: PkForm::default(),
     };
@@ -92,6 +98,25 @@ pub(crate) fn run(
     let result = sweep.run(&bar).map_err(|error| not_swept(file, &error))?;
     bar.clear();
     Ok(result)
+}
+
+/// The forces themselves, where the case asks for them.
+fn exact_forces<'a>(
+    file: &CaseFile,
+    forces: &'a Forces,
+    slopes: &'a RationalFit,
+) -> Result<Option<ExactForces<'a>>, Failure> {
+    let wanted = file.case.stability.as_ref().map(|swept| swept.refine);
+    match (wanted, &forces.transfer) {
+        (Some(Refine::Exact), Some(transfer)) => Ok(Some(ExactForces { transfer, slopes })),
+        (Some(Refine::Exact), None) => Err(Failure::input(
+            "`stability.refine = \"exact\"` with forces from a file",
+            file.places.of("stability.refine"),
+            "a file holds samples of Q, not Q itself",
+            "leave the key out",
+        )),
+        _ => Ok(None),
+    }
 }
 
 fn complete_system(

@@ -34,7 +34,7 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
         report::own_forces(console, &file, &aircraft, &own);
         let assembled = forces::assemble(&file, &aircraft, own)?;
         session.write_json(&out.join("gaf.json"), &assembled.document)?;
-        let forces = Forces::own(&file, &aircraft, &assembled.document)?;
+        let forces = Forces::own(&file, &aircraft, &assembled.own, &assembled.document)?;
         (aircraft.structure, forces)
     };
     console.notes(&forces.notes);

@@ -35,7 +35,7 @@ pub(crate) fn sweep(
             assembled.document.points.len(),
             assembled.own.key.to_hex()
         ));
-        let forces = Forces::own(&file, &aircraft, &assembled.document)?;
+        let forces = Forces::own(&file, &aircraft, &assembled.own, &assembled.document)?;
         (aircraft.structure, forces)
     };
     console.notes(&forces.notes);

@@ -1,0 +1,48 @@
+//! $Q(p)$ itself where roots are refined.
+
+use faer::{Mat, c64};
+use fladder_bem::TransferModel;
+use fladder_stability::{Aerodynamics, RationalFit};
+
+/// Forces of the swept modes, which come first, evaluated without any fit.
+///
+/// The derivative is that of the rational model: a Newton iteration converges
+/// to the roots of the exact $Q$ whatever the slope, and evaluating $Q$ is what
+/// costs.
+pub(crate) struct ExactForces<'a> {
+    pub(crate) transfer: &'a TransferModel,
+    pub(crate) slopes: &'a RationalFit,
+}
+
+impl Aerodynamics for ExactForces<'_> {
+    fn order(&self) -> usize {
+        self.slopes.order()
+    }
+
+    /// On the branch cut the real part of the limit from above is taken; where
+    /// $Q$ has no value every entry is NaN, which no iteration takes for a
+    /// root.
+    fn q(&self, p: c64) -> Mat<c64> {
+        let on_cut = p.im == 0.0 && p.re < 0.0;
+        let at = if on_cut {
+            c64::new(p.re, BESIDE_CUT * -p.re)
+        } else {
+            p
+        };
+        let order = self.order();
+        match self.transfer.q(at) {
+            Ok(q) if on_cut => Mat::from_fn(order, order, |i, j| c64::new(q[(i, j)].re, 0.0)),
+            Ok(q) => q.submatrix(0, 0, order, order).to_owned(),
+            Err(_) => Mat::from_fn(order, order, |_, _| c64::new(f64::NAN, f64::NAN)),
+        }
+    }
+
+    fn q_and_slope(&self, p: c64) -> (Mat<c64>, Mat<c64>) {
+        let (_, slope) = self.slopes.q_and_slope(p);
+        (self.q(p), slope)
+    }
+}
+
+/// Distance from the cut relative to $|g|$ at which its limit is taken; the
+/// forces change by as little.
+const BESIDE_CUT: f64 = 1e-12;
