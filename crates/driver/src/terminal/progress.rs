@@ -4,9 +4,9 @@ use super::interrupt::is_interrupted;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 
-/// Stage, how much is done, how much is left, and when it will end.
-const TEMPLATE: &str =
-    "{msg:28} {bar:30} {pos:>7}/{len:<7} {percent:>3} %  {elapsed} spent, {eta} left";
+/// Stage, how much is done, how much is left, and when it will end; narrower
+/// than 80 columns, so that it stays on one line.
+const TEMPLATE: &str = "{msg:27} {bar:14} {percent:>3} %  {pos}/{len}, {eta} left";
 
 /// One bar that goes through the stages of a computation.
 #[derive(Debug)]
