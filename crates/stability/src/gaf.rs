@@ -391,3 +391,112 @@ fn first_difference(left: &Mat<c64>, right: &Mat<c64>) -> Option<(usize, usize)>
         .find(|&place| left[place] != right[place])
         .map(|(row, column)| (row + 1, column + 1))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(g: f64, k: f64, value: f64) -> GafPoint {
+        GafPoint {
+            g,
+            k,
+            q: Mat::from_fn(1, 1, |_, _| c64::new(value, k * value)),
+        }
+    }
+
+    fn table(points: Vec<GafPoint>) -> Result<GafTable, GafError> {
+        GafTable::new(0.5, 0.0, vec!["heave".to_owned()], points, vec![])
+    }
+
+    /// Samples in any order make the same ascending grid, an exact double
+    /// changes nothing, and one on the branch cut is ignored with a note.
+    #[test]
+    fn order_doubles_and_the_cut_do_not_matter() {
+        let shuffled = vec![
+            point(0.1, 0.4, 5.0),
+            point(0.0, 0.4, 2.0),
+            point(-0.1, 0.0, 9.0),
+            point(0.0, 0.0, 1.0),
+            point(0.1, 0.0, 4.0),
+            point(0.0, 0.4, 2.0),
+            point(-0.1, 0.4, 3.0),
+        ];
+        let table = table(shuffled).unwrap();
+        assert_eq!(table.k(), [0.0, 0.4]);
+        assert_eq!(table.g(), [-0.1, 0.0, 0.1]);
+        let axis: Vec<f64> = table.axis().map(|q| q[(0, 0)].re).collect();
+        assert_eq!(axis, [1.0, 2.0]);
+        assert!(table.sample(0, 0).is_none());
+        assert_eq!(table.notes().len(), 1);
+        assert!(table.notes()[0].contains("branch cut"));
+    }
+
+    /// Each fault is refused with its place.
+    #[test]
+    fn faults_are_named_with_their_place() {
+        let good = || {
+            vec![
+                point(0.0, 0.0, 1.0),
+                point(0.0, 0.4, 2.0),
+                point(0.0, 0.8, 3.0),
+            ]
+        };
+        assert!(table(good()).is_ok());
+        let with = |extra: GafPoint| {
+            let mut points = good();
+            points.push(extra);
+            table(points).unwrap_err()
+        };
+        assert_eq!(
+            with(point(0.0, 0.4, 2.5)),
+            GafError::Conflict {
+                g: 0.0,
+                k: 0.4,
+                row: 1,
+                column: 1
+            }
+        );
+        assert_eq!(
+            with(point(0.1, 0.4, 2.5)),
+            GafError::Hole { g: 0.1, k: 0.0 }
+        );
+        assert_eq!(
+            with(point(0.0, 1.2, f64::NAN)),
+            GafError::NotFinite {
+                g: 0.0,
+                k: 1.2,
+                row: 1,
+                column: 1
+            }
+        );
+        assert_eq!(
+            with(point(0.0, -0.4, 1.0)),
+            GafError::Place {
+                index: 4,
+                g: 0.0,
+                k: -0.4
+            }
+        );
+        let wide = GafPoint {
+            g: 0.0,
+            k: 1.2,
+            q: Mat::zeros(2, 1),
+        };
+        assert!(matches!(
+            with(wide),
+            GafError::Shape {
+                rows: 2,
+                columns: 1,
+                ..
+            }
+        ));
+        let off_axis = vec![point(0.1, 0.1, 1.0), point(0.1, 0.2, 1.0)];
+        assert_eq!(table(off_axis).unwrap_err(), GafError::NoAxis);
+        assert_eq!(table(Vec::new()).unwrap_err(), GafError::NoAxis);
+        let lone = vec![point(0.0, 0.1, 1.0)];
+        assert_eq!(table(lone).unwrap_err(), GafError::TooFewFrequencies(1));
+        let modes = vec!["heave".to_owned()];
+        let steady = GafTable::new(0.5, 0.0, modes, good(), vec![None, None]).unwrap_err();
+        assert_eq!(steady, GafError::Steady { found: 2, modes: 1 });
+    }
+}

@@ -31,6 +31,10 @@ const MOST_DIRECTIONS: usize = 20;
 /// Samples are left out in this many turns.
 const FOLDS: usize = 4;
 
+/// Samples with $g<0$ and $k$ below this many times $|g|$ are too near the
+/// branch cut of the wake for a few poles, and are not fitted.
+const CUT_SLOPE: f64 = 2.0;
+
 /// A pole nearer to the origin than this part of the first positive $k$ has
 /// no sample that could tell it from a constant.
 const NEAREST_POLE: f64 = 0.25;
@@ -87,7 +91,7 @@ impl RationalFit {
         data.solve(poles, table)
     }
 
-    /// Largest misfit at a sample, as a fraction of the largest entry.
+    /// Largest misfit at a fitted sample, as a fraction of the largest entry.
     pub fn residual(&self) -> f64 {
         self.error
     }
@@ -211,7 +215,8 @@ impl Samples {
         for (i, &g) in table.g().iter().enumerate() {
             for (j, &k) in table.k().iter().enumerate() {
                 let p = c64::new(g, k);
-                if let Some(q) = table.sample(i, j).filter(|_| p.norm() > 0.0) {
+                let wanted = p.norm() > 0.0 && is_clear_of_cut(p);
+                if let Some(q) = table.sample(i, j).filter(|_| wanted) {
                     points.push(p);
                     matrices.push(q);
                 }
@@ -408,6 +413,10 @@ impl Samples {
     }
 }
 
+fn is_clear_of_cut(p: c64) -> bool {
+    p.im >= -CUT_SLOPE * p.re
+}
+
 fn real_part(pole: Pole) -> f64 {
     match pole {
         Pole::Real(a) => a,
@@ -431,9 +440,10 @@ fn misfit(fit: &RationalFit, table: &GafTable) -> f64 {
     let (mut worst, mut scale): (f64, f64) = (0.0, f64::MIN_POSITIVE);
     for (i, &g) in table.g().iter().enumerate() {
         for (j, &k) in table.k().iter().enumerate() {
-            if let Some(q) = table.sample(i, j) {
+            let p = c64::new(g, k);
+            if let Some(q) = table.sample(i, j).filter(|_| is_clear_of_cut(p)) {
                 scale = scale.max(largest(q.as_ref()));
-                worst = worst.max(largest((fit.q(c64::new(g, k)) - q).as_ref()));
+                worst = worst.max(largest((fit.q(p) - q).as_ref()));
             }
         }
     }

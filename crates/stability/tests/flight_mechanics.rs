@@ -1,6 +1,11 @@
 //! Rigid-body roots: a Boeing 747 from its derivatives, a free ellipsoid from
 //! the exact potential flow.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "a fault in the reference data must stop the test"
+)]
+
 mod common;
 
 use common::{data_path, matrix, number, read_json, roots, speeds};

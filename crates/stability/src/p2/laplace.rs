@@ -33,7 +33,7 @@ pub(super) fn fit(table: &GafTable) -> Result<PiecewiseQuadratic, FitError> {
         if first + 1 < lines.len() {
             let column = Side {
                 table,
-                side: *side,
+                sign: *side,
                 lines: &lines[first..],
                 inner_edge,
             };
@@ -73,7 +73,7 @@ fn side_lines(g: &[f64], side: f64) -> Vec<f64> {
 /// The rectangles on one side of the inner column.
 struct Side<'a> {
     table: &'a GafTable,
-    side: f64,
+    sign: f64,
     /// Distances from the axis, ascending.
     lines: &'a [f64],
     inner_edge: f64,
@@ -103,7 +103,7 @@ impl Side<'_> {
 
     fn bounds(&self, column: usize, start: f64) -> [f64; 2] {
         let (near, far) = (start.max(self.lines[column]), self.lines[column + 1]);
-        if self.side > 0.0 {
+        if self.sign > 0.0 {
             [near, far]
         } else {
             [-far, -near]
@@ -172,7 +172,7 @@ impl Side<'_> {
                 }));
             }
             if cell + rows < patches.len() {
-                let outer = if self.side > 0.0 {
+                let outer = if self.sign > 0.0 {
                     patch.g[1]
                 } else {
                     patch.g[0]

@@ -139,12 +139,12 @@ impl Wing {
         };
         let mass = matrix(&file["M"]);
         Self {
+            file,
             modes,
             mass,
             stiffness,
             damping,
             closed_form,
-            file,
         }
     }
 
@@ -199,6 +199,11 @@ impl Wing {
                 .sum();
             p * (p * form.b2[(i, j)] + form.b1[(i, j)]) + form.b0[(i, j)] + circulatory
         })
+    }
+
+    /// Coefficients of $U/50$, $50/U$, $(50/U)^3$ in $C(U)$.
+    pub fn damping_powers(&self) -> &[Mat<f64>; 3] {
+        &self.damping
     }
 
     pub fn truth(&self) -> &[Value] {
