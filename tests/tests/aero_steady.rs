@@ -13,7 +13,10 @@ use fladder_mesh::{Frame, TriMesh, Vec3};
 /// has a little lift at no incidence.
 fn lift(mesh: &TriMesh, area: f64) -> (f64, f64) {
     let plunge = mode(mesh, "plunge", Frame::Inertial, |_| Vec3::z());
-    let flow = Flow { alpha: 4_f64.to_radians(), beta: 0.0 };
+    let flow = Flow {
+        alpha: 4_f64.to_radians(),
+        beta: 0.0,
+    };
     let steady = solved(mesh, &edges(mesh), &[plunge], flow, 0.5).steady;
     let force_at = |alpha: f64| steady.loads_at([alpha.cos(), 0.0, alpha.sin()]).force[2];
     let step = 1e-3;
@@ -28,10 +31,16 @@ fn lift_slope_of_aspect_ratio_8_with_thickness() {
     for row in csv("wing_ar8_thick_lift_slope.csv") {
         let thickness: f64 = row["thickness"].parse().expect("number");
         let reference: f64 = row["CL_alpha"].parse().expect("number");
-        let wing = NacaWing { thickness, n_chord: 24, n_half_span: 18, ..NacaWing::default() };
-        for (kind, mesh) in
-            [("structured", wing.structured()), ("unstructured", wing.unstructured(1))]
-        {
+        let wing = NacaWing {
+            thickness,
+            n_chord: 24,
+            n_half_span: 18,
+            ..NacaWing::default()
+        };
+        for (kind, mesh) in [
+            ("structured", wing.structured()),
+            ("unstructured", wing.unstructured(1)),
+        ] {
             let mesh = mesh.expect("a wing");
             let (slope, ratio) = lift(&mesh, 8.0);
             println!(

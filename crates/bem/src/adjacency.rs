@@ -25,7 +25,11 @@ impl<'a> Adjacency<'a> {
                 directed.insert((corners[i], corners[(i + 1) % 3]), t as u32);
             }
         }
-        Self { triangles, around, directed }
+        Self {
+            triangles,
+            around,
+            directed,
+        }
     }
 
     /// Triangles that have the vertex, ascending.
@@ -58,7 +62,9 @@ impl<'a> Adjacency<'a> {
 
     /// The corner number of `vertex` in `triangle`.
     pub(crate) fn corner(&self, triangle: u32, vertex: u32) -> Option<usize> {
-        self.triangles[triangle as usize].iter().position(|&v| v == vertex)
+        self.triangles[triangle as usize]
+            .iter()
+            .position(|&v| v == vertex)
     }
 
     /// Groups into which the edges of `cuts` divide the triangles round `vertex`.

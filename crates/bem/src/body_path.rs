@@ -70,8 +70,11 @@ impl Tracer<'_> {
     /// Finds the junctions and the lines from them.
     pub(crate) fn trace(&self) -> Result<BodyPaths, BemError> {
         let trailing: HashSet<(u32, u32)> = self.trailing_edges().collect();
-        let trailing_vertices: HashSet<u32> =
-            self.chains.iter().flat_map(|c| c.vertices.iter().copied()).collect();
+        let trailing_vertices: HashSet<u32> = self
+            .chains
+            .iter()
+            .flat_map(|c| c.vertices.iter().copied())
+            .collect();
         let named = self.named_neighbours();
         let mut paths = Vec::new();
         for (chain, edge) in self.chains.iter().enumerate() {
@@ -89,7 +92,10 @@ impl Tracer<'_> {
                 } else {
                     self.follow(junction, &trailing, &trailing_vertices)?
                 };
-                paths.push(BodyPath { end: ChainEnd { chain, last }, vertices });
+                paths.push(BodyPath {
+                    end: ChainEnd { chain, last },
+                    vertices,
+                });
             }
         }
         Ok(self.join(paths, &trailing))
@@ -109,7 +115,9 @@ impl Tracer<'_> {
         let origin = self.vertices[vertex as usize];
         let mut best = -1.0_f64;
         for &t in self.adjacency.triangles_of(vertex) {
-            let Some([a, b]) = self.opposite(t, vertex) else { continue };
+            let Some([a, b]) = self.opposite(t, vertex) else {
+                continue;
+            };
             let ends = [a, b].map(|v| (self.vertices[v as usize] - origin).normalize());
             for (v, end) in [a, b].into_iter().zip(&ends) {
                 if !trailing.contains(&undirected(vertex, v)) {
@@ -152,7 +160,10 @@ impl Tracer<'_> {
             match best {
                 Some((next, cosine)) if cosine > FOLLOW_COSINE => {
                     if trailing_vertices.contains(&next) {
-                        return Err(BemError::PathMeetsTrailingEdge { junction, vertex: next });
+                        return Err(BemError::PathMeetsTrailingEdge {
+                            junction,
+                            vertex: next,
+                        });
                     }
                     line.push(next);
                     current = next;
@@ -191,7 +202,12 @@ impl Tracer<'_> {
                 .flatten()
                 .copied()
                 .filter(|v| !line.contains(v))
-                .map(|v| (v, (self.vertices[v as usize] - origin).dot(&self.downstream)))
+                .map(|v| {
+                    (
+                        v,
+                        (self.vertices[v as usize] - origin).dot(&self.downstream),
+                    )
+                })
                 .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
             match next {
                 Some((v, advance)) if advance > 0.0 => {
@@ -201,7 +217,10 @@ impl Tracer<'_> {
                 // At the tail the line of the other side leads back upstream.
                 Some(_) if line.len() > 1 => break,
                 Some((v, _)) => {
-                    return Err(BemError::PathNotDownstream { junction, vertex: v });
+                    return Err(BemError::PathNotDownstream {
+                        junction,
+                        vertex: v,
+                    });
                 }
                 None => break,
             }
@@ -214,11 +233,7 @@ impl Tracer<'_> {
 
     /// Pairs the line of a chain's last vertex with the nearest line of a chain's first
     /// vertex: the sheet then runs on in one direction with one upper side.
-    fn join(
-        &self,
-        mut paths: Vec<BodyPath>,
-        trailing: &HashSet<(u32, u32)>,
-    ) -> BodyPaths {
+    fn join(&self, mut paths: Vec<BodyPath>, trailing: &HashSet<(u32, u32)>) -> BodyPaths {
         let mut pairs = Vec::new();
         for before in (0..paths.len()).filter(|&p| paths[p].end.last) {
             for after in (0..paths.len()).filter(|&p| !paths[p].end.last) {
@@ -364,6 +379,7 @@ fn inner_cosine(ends: &[Vec3; 2], direction: &Vec3) -> f64 {
     }
     let normal = normal / size;
     let flat = direction - normal * normal.dot(direction);
-    let inside = ends[0].cross(&flat).dot(&normal) > 0.0 && flat.cross(&ends[1]).dot(&normal) > 0.0;
+    let inside =
+        ends[0].cross(&flat).dot(&normal) > 0.0 && flat.cross(&ends[1]).dot(&normal) > 0.0;
     if inside { flat.norm() } else { -1.0 }
 }

@@ -45,7 +45,10 @@ impl ModeFields {
             count: modes.len(),
             normal: Mat::zeros(3 * n_triangles, modes.len()),
             convected: vec![Vec3::zeros(); modes.len() * n_triangles],
-            displacement: modes.iter().flat_map(|m| m.displacement.iter().copied()).collect(),
+            displacement: modes
+                .iter()
+                .flat_map(|m| m.displacement.iter().copied())
+                .collect(),
             n_mesh,
             source: source.to_vec(),
             n_triangles,
@@ -96,7 +99,8 @@ impl ModeFields {
             if column < m {
                 self.normal[(row, column)]
             } else if column < m + e {
-                self.convected(self.inertial[column - m], t).dot(&galerkin.normals[t])
+                self.convected(self.inertial[column - m], t)
+                    .dot(&galerkin.normals[t])
             } else {
                 -galerkin.normals[t][column - m - e]
             }

@@ -62,20 +62,31 @@ impl Paths {
     /// Paths from `start` = ξ₀, which lies `margin` behind the last body point;
     /// `reach` is the largest distance ρ of a body point from a wake streamline.
     pub(crate) fn new(start: f64, margin: f64, reach: f64) -> Self {
-        let mut oscillating = Path { nodes: Vec::new(), weights: Vec::new() };
+        let mut oscillating = Path {
+            nodes: Vec::new(),
+            weights: Vec::new(),
+        };
         oscillating.add_ray(c64::new(start, 0.0), FIRST_RAY_DEG, RAY_LENGTH * reach);
-        let mut decaying = Path { nodes: Vec::new(), weights: Vec::new() };
+        let mut decaying = Path {
+            nodes: Vec::new(),
+            weights: Vec::new(),
+        };
         let length = DEPTH_FACTOR * reach / LEG_DEG.to_radians().sin().abs();
         let corner = decaying.add_leg(start, margin, length);
         decaying.add_ray(corner, SECOND_RAY_DEG, RAY_LENGTH * reach);
-        Self { oscillating, decaying }
+        Self {
+            oscillating,
+            decaying,
+        }
     }
 }
 
 impl Path {
     /// Whether e^{−sξ} stays small enough on the path for the sum to keep its digits.
     pub(crate) fn keeps_digits(nodes: &[(f64, f64)], s: c64) -> bool {
-        nodes.iter().all(|&(re, im)| -(s * c64::new(re, im)).re < LARGEST_GROWTH)
+        nodes
+            .iter()
+            .all(|&(re, im)| -(s * c64::new(re, im)).re < LARGEST_GROWTH)
     }
 
     fn add_ray(&mut self, start: c64, angle_deg: f64, length: f64) {
@@ -93,7 +104,11 @@ impl Path {
         let mut from = 0.0;
         let mut size = first.min(length);
         while from < length {
-            let piece = if from + 1.5 * size > length { length - from } else { size };
+            let piece = if from + 1.5 * size > length {
+                length - from
+            } else {
+                size
+            };
             for (y, w) in gauss_legendre(LEG_POINTS) {
                 self.nodes.push(start + direction * (from + piece * y));
                 self.weights.push(direction * (piece * w));
@@ -129,8 +144,10 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut previous, mut current) = (1.0, x);
     for j in 2..=n {
         let j = j as f64;
-        (previous, current) =
-            (current, ((2.0 * j - 1.0) * x * current - (j - 1.0) * previous) / j);
+        (previous, current) = (
+            current,
+            ((2.0 * j - 1.0) * x * current - (j - 1.0) * previous) / j,
+        );
     }
     (current, n as f64 * (x * current - previous) / (x * x - 1.0))
 }
@@ -144,8 +161,10 @@ mod tests {
     fn gauss_legendre_is_exact_to_degree_2n_minus_1() {
         for n in [8, 40] {
             for degree in 0..2 * n as i32 {
-                let sum: f64 =
-                    gauss_legendre(n).iter().map(|(y, w)| w * y.powi(degree)).sum();
+                let sum: f64 = gauss_legendre(n)
+                    .iter()
+                    .map(|(y, w)| w * y.powi(degree))
+                    .sum();
                 assert!((sum - 1.0 / f64::from(degree + 1)).abs() < 1e-13);
             }
         }
@@ -169,7 +188,10 @@ mod tests {
         for degrees in [85.0_f64, 90.0, 95.0, 100.0] {
             for size in [0.05, 0.5, 3.0] {
                 let s = c64::from_polar(size, degrees.to_radians());
-                let (a, b) = (integral(&paths.oscillating, s), integral(&paths.decaying, s));
+                let (a, b) = (
+                    integral(&paths.oscillating, s),
+                    integral(&paths.decaying, s),
+                );
                 let difference = (a - b).norm() / a.norm();
                 println!("arg s = {degrees}°, |s| = {size}: {difference:.1e}");
                 assert!(difference < 2e-6, "{a} {b}");

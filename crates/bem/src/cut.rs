@@ -113,7 +113,10 @@ impl CutSurface {
                 }
             }
         }
-        self.columns.push(Column { upper, lower: vertex });
+        self.columns.push(Column {
+            upper,
+            lower: vertex,
+        });
         Ok(Some(self.columns.len() - 1))
     }
 }
@@ -147,14 +150,23 @@ fn upper_corners(
     let body_cut = &paths.cuts[cut];
     let line = cut_line(cut, paths);
     // A line alone is walked from its junction; its last vertex has no second side.
-    let walk: Vec<u32> =
-        if body_cut.before.is_some() { line.clone() } else { line.iter().rev().copied().collect() };
-    let start = body_cut.before.or(body_cut.after).expect("a cut has a line");
+    let walk: Vec<u32> = if body_cut.before.is_some() {
+        line.clone()
+    } else {
+        line.iter().rev().copied().collect()
+    };
+    let start = body_cut
+        .before
+        .or(body_cut.after)
+        .expect("a cut has a line");
     let end = paths.paths[start].end;
     let chain = &chains[end.chain];
     let mut cuts = HashSet::from([undirected(walk[0], walk[1])]);
     let (te_index, te_other) = if end.last {
-        (chain.upper.len() - 1, chain.vertices[chain.vertices.len() - 2])
+        (
+            chain.upper.len() - 1,
+            chain.vertices[chain.vertices.len() - 2],
+        )
     } else {
         (0, chain.vertices[1])
     };
@@ -171,9 +183,15 @@ fn upper_corners(
         }
         let groups = adjacency.fan_groups(vertex, &cuts);
         if groups.len() != 2 {
-            return Err(BemError::PathFan { vertex, groups: groups.len() });
+            return Err(BemError::PathFan {
+                vertex,
+                groups: groups.len(),
+            });
         }
-        let side = groups.iter().find(|g| g.contains(&seed)).unwrap_or(&groups[0]);
+        let side = groups
+            .iter()
+            .find(|g| g.contains(&seed))
+            .unwrap_or(&groups[0]);
         if i > 0 {
             let corners = side
                 .iter()
@@ -181,11 +199,17 @@ fn upper_corners(
                 .collect();
             upper.push(UpperCorners { vertex, corners });
         }
-        seed = [adjacency.left_of(vertex, walk[i + 1]), adjacency.left_of(walk[i + 1], vertex)]
-            .into_iter()
-            .flatten()
-            .find(|t| side.contains(t))
-            .ok_or(BemError::PathFan { vertex, groups: groups.len() })?;
+        seed = [
+            adjacency.left_of(vertex, walk[i + 1]),
+            adjacency.left_of(walk[i + 1], vertex),
+        ]
+        .into_iter()
+        .flatten()
+        .find(|t| side.contains(t))
+        .ok_or(BemError::PathFan {
+            vertex,
+            groups: groups.len(),
+        })?;
     }
     Ok(upper)
 }

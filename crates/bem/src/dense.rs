@@ -54,7 +54,12 @@ impl DenseOperator {
             MemStack::new(&mut memory),
             faer::Spec::default(),
         );
-        let operator = Self { size, factors: rows, forward, inverse };
+        let operator = Self {
+            size,
+            factors: rows,
+            forward,
+            inverse,
+        };
         operator.check()?;
         Ok(operator)
     }
@@ -64,7 +69,11 @@ impl DenseOperator {
         let largest = pivots.clone().fold(0.0, f64::max);
         for (pivot, value) in pivots.enumerate() {
             if value.is_nan() || value <= SMALLEST_PIVOT * largest {
-                return Err(BemError::Singular { pivot, size: self.size, value });
+                return Err(BemError::Singular {
+                    pivot,
+                    size: self.size,
+                    value,
+                });
             }
         }
         Ok(())
@@ -85,11 +94,8 @@ impl DenseOperator {
             left -= width;
         }
         blocks.into_par_iter().for_each(|block| {
-            let request = solve::solve_in_place_scratch::<usize, f64>(
-                self.size,
-                block.ncols(),
-                Par::Seq,
-            );
+            let request =
+                solve::solve_in_place_scratch::<usize, f64>(self.size, block.ncols(), Par::Seq);
             let mut memory = MemBuffer::new(request);
             let stack = MemStack::new(&mut memory);
             if transposed {
@@ -139,6 +145,9 @@ mod tests {
     #[test]
     fn a_singular_matrix_is_refused() {
         let rows = vec![1.0, 2.0, 2.0, 4.0];
-        assert!(matches!(DenseOperator::new(rows, 2), Err(BemError::Singular { .. })));
+        assert!(matches!(
+            DenseOperator::new(rows, 2),
+            Err(BemError::Singular { .. })
+        ));
     }
 }

@@ -15,7 +15,9 @@ use fladder_mesh::shapes::NacaWing;
 use fladder_mesh::{Frame, SurfaceMode, Topology, Vec3, trailing_edge};
 
 fn complex(matrix: &Mat<f64>) -> Mat<c64> {
-    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+        c64::new(matrix[(i, j)], 0.0)
+    })
 }
 
 /// Q(p) of a problem whose surface has no body lines, by the full complex system.
@@ -25,11 +27,16 @@ fn direct(problem: &Problem<'_>, p: c64) -> Mat<c64> {
     let galerkin = Galerkin::new(&surface);
     let fields = ModeFields::new(&galerkin, &surface.source, problem.modes, stream);
     let sources = fields.sources(&galerkin);
-    let assembly = galerkin.assemble(sources.as_ref(), &Silent).expect("assembled");
+    let assembly = galerkin
+        .assemble(sources.as_ref(), &Silent)
+        .expect("assembled");
     let n = galerkin.n_vertices;
     let body = Mat::from_fn(n, n, |i, j| assembly.rows[i * n + j]);
-    let influence =
-        WakeInfluence { galerkin: &galerkin, wake: &wake, free_terms: &assembly.free_terms };
+    let influence = WakeInfluence {
+        galerkin: &galerkin,
+        wake: &wake,
+        free_terms: &assembly.free_terms,
+    };
     let system_at = |s: c64| {
         let tested = influence.tested_wake(s, surface.columns.len());
         let mut system = complex(&body);
@@ -80,13 +87,20 @@ fn modes(vertices: &[Vec3]) -> Vec<SurfaceMode> {
     vec![
         mode("plunge", Frame::Body, |_| Vec3::z()),
         mode("pitch", Frame::Inertial, |x| Vec3::new(x.z, 0.0, 0.5 - x.x)),
-        mode("bending", Frame::Inertial, |x| Vec3::new(0.0, 0.0, x.y * x.y / 16.0)),
+        mode("bending", Frame::Inertial, |x| {
+            Vec3::new(0.0, 0.0, x.y * x.y / 16.0)
+        }),
     ]
 }
 
 #[test]
 fn the_reduced_model_equals_the_complex_solve() {
-    let wing = NacaWing { n_chord: 6, n_half_span: 4, sweep_deg: 20.0, ..NacaWing::default() };
+    let wing = NacaWing {
+        n_chord: 6,
+        n_half_span: 4,
+        sweep_deg: 20.0,
+        ..NacaWing::default()
+    };
     let mesh = wing.structured().expect("wing");
     let edges = trailing_edge::find_by_shape(
         &mesh,
@@ -98,7 +112,10 @@ fn the_reduced_model_equals_the_complex_solve() {
         mesh: &mesh,
         trailing_edges: &edges,
         modes: &modes,
-        flow: Flow { alpha: 0.05, beta: 0.02 },
+        flow: Flow {
+            alpha: 0.05,
+            beta: 0.02,
+        },
         wake_direction: WakeDirection::Freestream,
         body_lines: &[],
         semichord: 0.5,
@@ -122,7 +139,11 @@ fn the_reduced_model_equals_the_complex_solve() {
 /// Q is analytic: its derivatives along g and along k agree (Cauchy–Riemann).
 #[test]
 fn q_is_analytic_in_the_laplace_plane() {
-    let wing = NacaWing { n_chord: 6, n_half_span: 4, ..NacaWing::default() };
+    let wing = NacaWing {
+        n_chord: 6,
+        n_half_span: 4,
+        ..NacaWing::default()
+    };
     let mesh = wing.structured().expect("wing");
     let edges = trailing_edge::find_by_shape(
         &mesh,
@@ -170,9 +191,14 @@ fn q_is_analytic_in_the_laplace_plane() {
 fn double_layer_row_sums_are_minus_one_half() {
     for mesh in [
         fladder_mesh::shapes::icosphere(6),
-        NacaWing { thickness: 0.03, n_chord: 12, n_half_span: 6, ..NacaWing::default() }
-            .structured()
-            .expect("wing"),
+        NacaWing {
+            thickness: 0.03,
+            n_chord: 12,
+            n_half_span: 6,
+            ..NacaWing::default()
+        }
+        .structured()
+        .expect("wing"),
     ] {
         let panels = crate::panels::PanelSet::new(&mesh.vertices, &mesh.triangles);
         let mut scratch = panels.scratch();
@@ -187,7 +213,10 @@ fn double_layer_row_sums_are_minus_one_half() {
                 worst = worst.max((sum + 0.5).abs());
             }
         }
-        println!("{} triangles: row sums to {worst:.1e}", mesh.triangles.len());
+        println!(
+            "{} triangles: row sums to {worst:.1e}",
+            mesh.triangles.len()
+        );
         assert!(worst < 1e-12);
     }
 }
@@ -200,12 +229,18 @@ fn a_panel_alone_gives_what_it_gives_in_the_set() {
     let mut scratch = panels.scratch();
     let mut d = vec![[0.0; 3]; panels.len()];
     let mut s = d.clone();
-    for point in [Vec3::new(0.2, 0.1, -0.9), Vec3::new(1.3, -0.2, 0.4), Vec3::zeros()] {
+    for point in [
+        Vec3::new(0.2, 0.1, -0.9),
+        Vec3::new(1.3, -0.2, 0.4),
+        Vec3::zeros(),
+    ] {
         panels.doublets_and_sources(point, &mut scratch, &mut d, &mut s);
         for t in 0..panels.len() {
             let (one_d, one_s) = panels.one(t, point);
             for c in 0..3 {
-                assert!((one_d[c] - d[t][c]).abs() < 1e-14 && (one_s[c] - s[t][c]).abs() < 1e-14);
+                assert!(
+                    (one_d[c] - d[t][c]).abs() < 1e-14 && (one_s[c] - s[t][c]).abs() < 1e-14
+                );
             }
         }
     }

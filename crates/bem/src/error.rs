@@ -57,7 +57,9 @@ pub enum BemError {
         junction: u32,
     },
     /// A named body line does not run downstream.
-    #[error("the body line from the junction at vertex {junction} runs upstream at vertex {vertex}")]
+    #[error(
+        "the body line from the junction at vertex {junction} runs upstream at vertex {vertex}"
+    )]
     PathNotDownstream {
         /// Vertex where the trailing edge ends on the body.
         junction: u32,
@@ -119,7 +121,9 @@ pub enum LaplaceError {
         k: f64,
     },
     /// The motion decays so fast that the far wake's integral loses its digits.
-    #[error("at g = {g}, k = {k} the motion decays too fast for the far wake to be integrated; take g nearer to 0")]
+    #[error(
+        "at g = {g}, k = {k} the motion decays too fast for the far wake to be integrated; take g nearer to 0"
+    )]
     TooDamped {
         /// Reduced damping.
         g: f64,

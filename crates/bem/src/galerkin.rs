@@ -124,7 +124,9 @@ impl Galerkin {
         let tasks: Vec<usize> = (0..self.n_triangles()).step_by(TASK_TRIANGLES).collect();
         for batch in tasks.chunks(TASKS_AT_ONCE) {
             if progress.cancelled() {
-                return Err(BemError::Interrupted { stage: "assembling body influences" });
+                return Err(BemError::Interrupted {
+                    stage: "assembling body influences",
+                });
             }
             let evaluated: Vec<TaskRows> = batch
                 .par_iter()
@@ -140,7 +142,11 @@ impl Galerkin {
                     .copy_from_slice(&task.free_terms);
             }
         }
-        Ok(Assembly { rows, right_hand_sides, free_terms })
+        Ok(Assembly {
+            rows,
+            right_hand_sides,
+            free_terms,
+        })
     }
 
     pub(crate) fn task_triangles(&self, first: usize) -> std::ops::Range<usize> {
@@ -170,8 +176,7 @@ impl Galerkin {
                 &mut d,
                 &mut [first, second, third],
             );
-            for ((row, d), point) in
-                rows.chunks_exact_mut(self.n_vertices).zip(&d).zip(&POINTS)
+            for ((row, d), point) in rows.chunks_exact_mut(self.n_vertices).zip(&d).zip(&POINTS)
             {
                 for (corners, values) in self.triangles.iter().zip(d) {
                     for (&v, value) in corners.iter().zip(values) {
@@ -189,8 +194,19 @@ impl Galerkin {
         let transposed =
             MatRef::from_column_major_slice(influences, 3 * self.n_triangles(), n_points);
         let mut product = Mat::zeros(n_points, sources.ncols());
-        matmul(&mut product, Accum::Replace, transposed.transpose(), sources, -1.0, Par::Seq);
-        TaskRows { doublets, sources: product, free_terms }
+        matmul(
+            &mut product,
+            Accum::Replace,
+            transposed.transpose(),
+            sources,
+            -1.0,
+            Par::Seq,
+        );
+        TaskRows {
+            doublets,
+            sources: product,
+            free_terms,
+        }
     }
 
     /// Adds the tested rows; one thread a matrix row, tasks in their order.
@@ -212,15 +228,17 @@ impl Galerkin {
                 }
             }
         }
-        rows.par_chunks_exact_mut(self.n_vertices).zip(&touching).for_each(|(row, list)| {
-            for &(task, point, weight) in list {
-                let from = point * self.n_vertices;
-                let values = &evaluated[task].doublets[from..from + self.n_vertices];
-                for (a, d) in row.iter_mut().zip(values) {
-                    *a += weight * d;
+        rows.par_chunks_exact_mut(self.n_vertices)
+            .zip(&touching)
+            .for_each(|(row, list)| {
+                for &(task, point, weight) in list {
+                    let from = point * self.n_vertices;
+                    let values = &evaluated[task].doublets[from..from + self.n_vertices];
+                    for (a, d) in row.iter_mut().zip(values) {
+                        *a += weight * d;
+                    }
                 }
-            }
-        });
+            });
         for (v, list) in touching.iter().enumerate() {
             for &(task, point, weight) in list {
                 for c in 0..right_hand_sides.ncols() {

@@ -65,10 +65,14 @@ impl Spheres {
 
     /// Triangles near the test triangle.
     fn near<'a>(&'a self, test: &'a TestTriangle) -> impl Iterator<Item = usize> + 'a {
-        self.centres.iter().zip(&self.radii).enumerate().filter_map(|(t, (centre, radius))| {
-            let reach = NEAR * (radius + test.radius);
-            ((centre - test.centre).norm_squared() < reach * reach).then_some(t)
-        })
+        self.centres
+            .iter()
+            .zip(&self.radii)
+            .enumerate()
+            .filter_map(|(t, (centre, radius))| {
+                let reach = NEAR * (radius + test.radius);
+                ((centre - test.centre).norm_squared() < reach * reach).then_some(t)
+            })
     }
 }
 
@@ -76,9 +80,17 @@ impl TestTriangle {
     pub(crate) fn new(corners: &[Vec3; 3]) -> Self {
         let at = |b: &[f64; 3]| b[0] * corners[0] + b[1] * corners[1] + b[2] * corners[2];
         let coordinates = divided(LEVEL);
-        let division = Division { points: coordinates.iter().map(at).collect(), coordinates };
+        let division = Division {
+            points: coordinates.iter().map(at).collect(),
+            coordinates,
+        };
         let (centre, radius) = sphere(corners);
-        Self { points: POINTS.map(|b| at(&b)), centre, radius, division }
+        Self {
+            points: POINTS.map(|b| at(&b)),
+            centre,
+            radius,
+            division,
+        }
     }
 
     /// D at the three points, or values with the same moments where a panel is near.
@@ -109,7 +121,12 @@ impl TestTriangle {
         out: &mut [Vec<CornerValues>; 3],
         sources: &mut [&mut [CornerValues]; 3],
     ) {
-        for ((point, d), s) in self.points.iter().zip(out.iter_mut()).zip(sources.iter_mut()) {
+        for ((point, d), s) in self
+            .points
+            .iter()
+            .zip(out.iter_mut())
+            .zip(sources.iter_mut())
+        {
             panels.doublets_and_sources(*point, scratch, d, s);
         }
         for t in spheres.near(self) {
@@ -159,13 +176,21 @@ fn divided(level: u32) -> Vec<[f64; 3]> {
     let point = |part: &[[f64; 3]; 3], b: &[f64; 3]| {
         std::array::from_fn(|c| (0..3).map(|i| b[i] * part[i][c]).sum())
     };
-    parts.iter().flat_map(|part| POINTS.iter().map(move |b| point(part, b))).collect()
+    parts
+        .iter()
+        .flat_map(|part| POINTS.iter().map(move |b| point(part, b)))
+        .collect()
 }
 
 fn quarters(part: &[[f64; 3]; 3]) -> [[[f64; 3]; 3]; 4] {
     let middle = |a: usize, b: usize| std::array::from_fn(|c| 0.5 * (part[a][c] + part[b][c]));
     let (ab, bc, ca) = (middle(0, 1), middle(1, 2), middle(2, 0));
-    [[part[0], ab, ca], [ab, part[1], bc], [ca, bc, part[2]], [ab, bc, ca]]
+    [
+        [part[0], ab, ca],
+        [ab, part[1], bc],
+        [ca, bc, part[2]],
+        [ab, bc, ca],
+    ]
 }
 
 #[cfg(test)]

@@ -83,7 +83,10 @@ impl SharedEdge {
 /// Centroid and distance of the farthest corner.
 pub(crate) fn sphere(corners: &[Vec3; 3]) -> (Vec3, f64) {
     let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let radius = corners.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);
+    let radius = corners
+        .iter()
+        .map(|p| (p - centre).norm())
+        .fold(0.0, f64::max);
     (centre, radius)
 }
 
@@ -119,7 +122,11 @@ impl PanelSet {
             .iter()
             .map(|&corners| Panel::new(vertices, corners, &mut edge_index, &mut edges))
             .collect();
-        Self { vertices: vertices.to_vec(), edges, panels }
+        Self {
+            vertices: vertices.to_vec(),
+            edges,
+            panels,
+        }
     }
 
     /// As [`Self::new`] for a small part of a surface: only vertices in use are kept.
@@ -202,18 +209,29 @@ impl PanelSet {
             source_edges[i] =
                 edge.source_term(&offsets[a], distances[a], distances[b], logarithms[i]);
         }
-        let foot = panel.foot(&View { offsets, distances, logarithms });
+        let foot = panel.foot(&View {
+            offsets,
+            distances,
+            logarithms,
+        });
         (panel.doublet(&foot), panel.source(&foot, source_edges))
     }
 
     /// Centre and radius of a sphere round one triangle.
     pub(crate) fn sphere(&self, triangle: usize) -> (Vec3, f64) {
-        sphere(&self.panels[triangle].corners.map(|v| self.vertices[v as usize]))
+        sphere(
+            &self.panels[triangle]
+                .corners
+                .map(|v| self.vertices[v as usize]),
+        )
     }
 
     fn distances_and_logarithms(&self, point: Vec3, scratch: &mut PanelScratch) {
-        for ((vertex, d), r) in
-            self.vertices.iter().zip(&mut scratch.offsets).zip(&mut scratch.distances)
+        for ((vertex, d), r) in self
+            .vertices
+            .iter()
+            .zip(&mut scratch.offsets)
+            .zip(&mut scratch.distances)
         {
             *d = vertex - point;
             *r = d.norm();
@@ -225,7 +243,12 @@ impl PanelSet {
     }
 
     fn source_edge_terms(&self, scratch: &mut PanelScratch) {
-        let PanelScratch { offsets, distances, logarithms, source_edges } = scratch;
+        let PanelScratch {
+            offsets,
+            distances,
+            logarithms,
+            source_edges,
+        } = scratch;
         for ((edge, l), j) in self.edges.iter().zip(logarithms).zip(source_edges) {
             let [a, b] = edge.ends.map(|v| v as usize);
             *j = edge.source_term(&offsets[a], distances[a], distances[b], *l);
@@ -313,12 +336,21 @@ impl Panel {
         let second = -self.gradients[1].dot(&d0);
         let shape = [first, second, 1.0 - first - second];
         if height.abs() < self.coplanar {
-            return Foot { height: 0.0, solid_angle: 0.0, shape, logarithms };
+            return Foot {
+                height: 0.0,
+                solid_angle: 0.0,
+                shape,
+                logarithms,
+            };
         }
-        let base =
-            r0 * r1 * r2 + d0.dot(&d1) * r2 + d1.dot(&d2) * r0 + d2.dot(&d0) * r1;
+        let base = r0 * r1 * r2 + d0.dot(&d1) * r2 + d1.dot(&d2) * r0 + d2.dot(&d0) * r1;
         let solid_angle = 2.0 * (self.twice_area * height).atan2(base);
-        Foot { height, solid_angle, shape, logarithms }
+        Foot {
+            height,
+            solid_angle,
+            shape,
+            logarithms,
+        }
     }
 
     fn doublet(&self, foot: &Foot) -> CornerValues {

@@ -63,7 +63,13 @@ impl Functionals {
         }
         for (triangle, corner, slot) in wake.body_corners() {
             let velocity = onsets.velocity(triangle as usize, stream);
-            let corner = CornerOf { galerkin, fields, velocity, t: triangle as usize, corner };
+            let corner = CornerOf {
+                galerkin,
+                fields,
+                velocity,
+                t: triangle as usize,
+                corner,
+            };
             let rows = (0..m).map(|i| (corner.p0(i), corner.p1(i))).unzip();
             functionals.carried.push((slot, rows.0, rows.1));
         }
@@ -86,7 +92,13 @@ impl Functionals {
             let mean = fields.mean_normal(i, t);
             self.steady[i] -= pressure * mean * area;
             for (c, &v) in galerkin.triangles[t].iter().enumerate() {
-                let corner = CornerOf { galerkin, fields, velocity, t, corner: c };
+                let corner = CornerOf {
+                    galerkin,
+                    fields,
+                    velocity,
+                    t,
+                    corner: c,
+                };
                 self.p0[(v as usize, i)] += corner.p0(i);
                 self.p1[(v as usize, i)] += corner.p1(i);
             }

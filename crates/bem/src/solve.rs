@@ -125,7 +125,8 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
     let n = sizes.unknowns as f64;
     let points = 3.0 * sizes.triangles as f64;
     let functionals = (sizes.wake_columns + 2 * problem.modes.len()) as f64;
-    let nodes = (wake.paths.oscillating.nodes.len() * 2 + wake.paths.decaying.nodes.len()) as f64;
+    let nodes =
+        (wake.paths.oscillating.nodes.len() * 2 + wake.paths.decaying.nodes.len()) as f64;
     let far = points * sizes.wake_streamlines as f64 * nodes;
     let pairs = points * (sizes.triangles as f64 + 2.0 * sizes.wake_elements as f64);
     let flops = 2.0 / 3.0 * n.powi(3)
@@ -137,7 +138,8 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
     let blocks = 16.0 * functionals * (wake.slots.len() as f64 * 8.0)
         + 16.0 * functionals * (sizes.wake_streamlines as f64 * nodes * 16.0);
     Ok(Plan {
-        memory_bytes: (n * n * 8.0 + batch + influences + blocks + n * functionals * 16.0) as u64,
+        memory_bytes: (n * n * 8.0 + batch + influences + blocks + n * functionals * 16.0)
+            as u64,
         core_seconds: pairs * SECONDS_PER_PANEL_PAIR
             + far * SECONDS_PER_FAR_NODE
             + flops / FLOPS_PER_SECOND,
@@ -188,9 +190,15 @@ fn check_modes(problem: &Problem<'_>) -> Result<(), BemError> {
                 expected: problem.mesh.vertices.len(),
             });
         }
-        let bad = mode.displacement.iter().position(|u| !u.iter().all(|x| x.is_finite()));
+        let bad = mode
+            .displacement
+            .iter()
+            .position(|u| !u.iter().all(|x| x.is_finite()));
         if let Some(vertex) = bad {
-            return Err(BemError::ModeNotFinite { mode: mode.name.clone(), vertex });
+            return Err(BemError::ModeNotFinite {
+                mode: mode.name.clone(),
+                vertex,
+            });
         }
     }
     Ok(())
@@ -222,27 +230,51 @@ pub fn solve(problem: &Problem<'_>, progress: &dyn Progress) -> Result<Solution,
     }
     let mut potentials = assembly.right_hand_sides;
     operator.solve(&mut potentials);
-    let influence =
-        WakeInfluence { galerkin: &galerkin, wake: &wake, free_terms: &assembly.free_terms };
+    let influence = WakeInfluence {
+        galerkin: &galerkin,
+        wake: &wake,
+        free_terms: &assembly.free_terms,
+    };
     let selector = selector(&surface);
-    let onsets = steady_onsets(&influence, &operator, &selector, &fields, &potentials, progress)?;
+    let onsets = steady_onsets(
+        &influence,
+        &operator,
+        &selector,
+        &fields,
+        &potentials,
+        progress,
+    )?;
     let functionals = Functionals::new(&galerkin, &fields, &onsets, &wake, stream);
     let mut adjoint = concatenate(&[&selector, &functionals.p0, &functionals.p1]);
     operator.solve_transpose(&mut adjoint);
     drop(operator);
     let mut blocks = influence.blocks(adjoint.as_ref(), progress)?;
     add_carried(&mut blocks, &functionals, surface.columns.len());
-    let transfer = reduce(problem, &surface, &wake, &fields, &functionals, &potentials, &blocks);
+    let transfer = reduce(
+        problem,
+        &surface,
+        &wake,
+        &fields,
+        &functionals,
+        &potentials,
+        &blocks,
+    );
     check_finite(problem, &transfer)?;
     let report = SteadyReport {
         galerkin: &galerkin,
         surface: &surface,
+        wake: &wake,
         onsets: &onsets,
         stream,
         moment_point: problem.moment_point,
     };
     let steady = report.build(problem.trailing_edges, functionals.steady);
-    Ok(Solution { transfer, steady, sizes: sizes(&surface, &wake), notes: wake.notes })
+    Ok(Solution {
+        transfer,
+        steady,
+        sizes: sizes(&surface, &wake),
+        notes: wake.notes,
+    })
 }
 
 /// K: +1 at upper, −1 at lower vertices.
@@ -283,15 +315,21 @@ fn steady_onsets(
         });
         let right = jumps_of(selector, phi.as_ref());
         let right = Mat::from_fn(n, 3, |i, j| c64::new(right[(i, j)], 0.0));
-        let solved = crate::transfer::solve_complex(system, right).ok_or(BemError::Singular {
-            pivot: 0,
-            size: n,
-            value: 0.0,
-        })?;
+        let solved =
+            crate::transfer::solve_complex(system, right).ok_or(BemError::Singular {
+                pivot: 0,
+                size: n,
+                value: 0.0,
+            })?;
         jumps = Mat::from_fn(n, 3, |i, j| solved[(i, j)].re);
         phi += &response * &jumps;
     }
-    Ok(UnitOnsets::new(influence.galerkin, influence.wake, &phi, jumps))
+    Ok(UnitOnsets::new(
+        influence.galerkin,
+        influence.wake,
+        &phi,
+        jumps,
+    ))
 }
 
 fn concatenate(parts: &[&Mat<f64>]) -> Mat<f64> {
@@ -348,8 +386,18 @@ fn reduce(
         c1: Block::new(functionals.c1.as_ref()),
         c0: Block::new(functionals.c0.as_ref()),
         near: near_blocks(wake, &blocks.near),
-        oscillating: far_blocks(wake, &wake.paths.oscillating, &blocks.far[0], surface.columns.len()),
-        decaying: far_blocks(wake, &wake.paths.decaying, &blocks.far[1], surface.columns.len()),
+        oscillating: far_blocks(
+            wake,
+            &wake.paths.oscillating,
+            &blocks.far[0],
+            surface.columns.len(),
+        ),
+        decaying: far_blocks(
+            wake,
+            &wake.paths.decaying,
+            &blocks.far[1],
+            surface.columns.len(),
+        ),
     }
 }
 
@@ -357,12 +405,17 @@ fn near_blocks(wake: &Wake, near: &Mat<f64>) -> NearBlocks {
     let mut stations: Vec<f64> = wake.slots.iter().map(|s| s.xi).collect();
     stations.sort_by(f64::total_cmp);
     stations.dedup();
-    let mut blocks = NearBlocks { stations, ..NearBlocks::default() };
+    let mut blocks = NearBlocks {
+        stations,
+        ..NearBlocks::default()
+    };
     for (r, slot) in wake.slots.iter().enumerate() {
         let station = blocks.stations.partition_point(|x| *x < slot.xi);
         for &(column, weight) in &wake.threads[slot.thread] {
             blocks.entries.push((column as u32, station as u32));
-            blocks.values.extend((0..near.nrows()).map(|i| weight * near[(i, r)]));
+            blocks
+                .values
+                .extend((0..near.nrows()).map(|i| weight * near[(i, r)]));
         }
     }
     blocks
@@ -395,6 +448,9 @@ fn check_finite(problem: &Problem<'_>, transfer: &TransferModel) -> Result<(), B
     if transfer.is_sound() {
         return Ok(());
     }
-    let mode = problem.modes.first().map_or_else(String::new, |m| m.name.clone());
+    let mode = problem
+        .modes
+        .first()
+        .map_or_else(String::new, |m| m.name.clone());
     Err(BemError::NotFinite { mode })
 }

@@ -22,7 +22,12 @@ pub(crate) struct UnitOnsets {
 
 impl UnitOnsets {
     /// From the potentials (vertices × 3) and jumps (columns × 3).
-    pub(crate) fn new(galerkin: &Galerkin, wake: &Wake, potentials: &Mat<f64>, jumps: Mat<f64>) -> Self {
+    pub(crate) fn new(
+        galerkin: &Galerkin,
+        wake: &Wake,
+        potentials: &Mat<f64>,
+        jumps: Mat<f64>,
+    ) -> Self {
         let carried = carried_jumps(galerkin, wake, &jumps);
         let velocities = (0..galerkin.n_triangles())
             .map(|t| {
@@ -66,7 +71,11 @@ fn carried_jumps(
         }
         carried.insert((triangle, corner), value);
     }
-    debug_assert!(carried.keys().all(|(t, _)| (*t as usize) < galerkin.n_triangles()));
+    debug_assert!(
+        carried
+            .keys()
+            .all(|(t, _)| (*t as usize) < galerkin.n_triangles())
+    );
     carried
 }
 
@@ -101,8 +110,9 @@ pub struct SteadyState {
     pub loads: Loads,
     /// −∮ c_p0 n·φ_i dS of every mode, m² for unit-metre modes.
     pub generalised_forces: Vec<f64>,
-    /// Lift per q∞ from the wake jump, 2 ∫ κ₀ dy, m²: beside the pressure's it shows
-    /// how well the mesh resolves the flow.
+    /// Lift per q∞ from the jump far downstream, 2 ∫ κ₀ dy over the whole sheet (Kutta
+    /// and Joukowski), m²: beside the pressure's it shows how well the mesh resolves
+    /// the flow.
     pub lift_by_wake_jump: f64,
     /// Lift per q∞ from the pressure, perpendicular to the stream, m².
     pub lift_by_pressure: f64,
@@ -129,7 +139,10 @@ impl SteadyState {
                 sum
             })
         };
-        Loads { force: evaluate(&self.force_form), moment: evaluate(&self.moment_form) }
+        Loads {
+            force: evaluate(&self.force_form),
+            moment: evaluate(&self.moment_form),
+        }
     }
 }
 
@@ -137,6 +150,7 @@ impl SteadyState {
 pub(crate) struct SteadyReport<'a> {
     pub(crate) galerkin: &'a Galerkin,
     pub(crate) surface: &'a CutSurface,
+    pub(crate) wake: &'a Wake,
     pub(crate) onsets: &'a UnitOnsets,
     pub(crate) stream: Vec3,
     pub(crate) moment_point: Vec3,
@@ -149,14 +163,18 @@ impl SteadyReport<'_> {
         generalised_forces: Vec<f64>,
     ) -> SteadyState {
         let (force_form, moment_form) = self.forms();
-        let wake_jumps: Vec<SpanwiseJump> =
-            (0..chains.len()).map(|c| self.spanwise(c, &chains[c])).collect();
+        let wake_jumps: Vec<SpanwiseJump> = (0..chains.len())
+            .map(|c| self.spanwise(c, &chains[c]))
+            .collect();
         let lift_direction = self.lift_direction();
         let mut state = SteadyState {
             stream: self.stream.into(),
-            lift_by_wake_jump: wake_jumps.iter().map(|j| self.wake_lift(j)).sum(),
+            lift_by_wake_jump: self.wake_lift(),
             wake_jumps,
-            loads: Loads { force: [0.0; 3], moment: [0.0; 3] },
+            loads: Loads {
+                force: [0.0; 3],
+                moment: [0.0; 3],
+            },
             generalised_forces,
             lift_by_pressure: 0.0,
             lowest_pressure: self.lowest_pressure(),
@@ -203,34 +221,53 @@ impl SteadyReport<'_> {
         let columns = &self.surface.chain_columns[c];
         let jumps = columns
             .iter()
-            .map(|column| {
-                column.map_or(0.0, |j| {
-                    (0..3).map(|a| self.onsets.jumps[(j, a)] * self.stream[a]).sum()
-                })
-            })
+            .map(|column| column.map_or(0.0, |j| self.column_jump(j)))
             .collect();
-        let positions =
-            chain.vertices.iter().map(|&v| self.surface.vertices[v as usize].into()).collect();
+        let positions = chain
+            .vertices
+            .iter()
+            .map(|&v| self.surface.vertices[v as usize].into())
+            .collect();
         let on_body = [columns.first(), columns.last()]
             .map(|end| !chain.closed && end.is_some_and(Option::is_some));
-        SpanwiseJump { positions, jumps, on_body }
+        SpanwiseJump {
+            positions,
+            jumps,
+            on_body,
+        }
     }
 
-    /// Kutta–Joukowski: force per q∞ = 2 ∫ κ U × dl, its component along lift.
-    fn wake_lift(&self, jump: &SpanwiseJump) -> f64 {
+    /// Kutta–Joukowski: force per q∞ = 2 ∫ κ U × dl over the far sheet, along lift.
+    fn wake_lift(&self) -> f64 {
         let lift = self.lift_direction();
-        let mut sum = 0.0;
-        for (p, k) in jump.positions.windows(2).zip(jump.jumps.windows(2)) {
-            let step = Vec3::from(p[1]) - Vec3::from(p[0]);
-            let mean = 0.5 * (k[0] + k[1]);
-            sum += 2.0 * mean * self.stream.cross(&step).dot(&lift);
-        }
-        sum
+        let far = &self.wake.far;
+        let jump = |line: u32| -> f64 {
+            self.wake.threads[self.wake.far_threads[line as usize]]
+                .iter()
+                .map(|&(column, weight)| weight * self.column_jump(column))
+                .sum()
+        };
+        far.strips
+            .iter()
+            .map(|&[a, b]| {
+                let step = far.anchors[b as usize] - far.anchors[a as usize];
+                (jump(a) + jump(b)) * self.stream.cross(&step).dot(&lift)
+            })
+            .sum()
+    }
+
+    fn column_jump(&self, column: usize) -> f64 {
+        (0..3)
+            .map(|axis| self.onsets.jumps[(column, axis)] * self.stream[axis])
+            .sum()
     }
 
     fn lowest_pressure(&self) -> (f64, usize) {
         (0..self.galerkin.n_triangles())
             .map(|t| (1.0 - self.onsets.velocity(t, self.stream).norm_squared(), t))
-            .fold((f64::INFINITY, 0), |low, here| if here.0 < low.0 { here } else { low })
+            .fold(
+                (f64::INFINITY, 0),
+                |low, here| if here.0 < low.0 { here } else { low },
+            )
     }
 }

@@ -34,7 +34,11 @@ impl Block {
         let values = (0..matrix.ncols())
             .flat_map(|j| (0..matrix.nrows()).map(move |i| matrix[(i, j)]))
             .collect();
-        Self { rows: matrix.nrows(), columns: matrix.ncols(), values }
+        Self {
+            rows: matrix.nrows(),
+            columns: matrix.ncols(),
+            values,
+        }
     }
 
     fn view(&self) -> MatRef<'_, f64> {
@@ -67,7 +71,10 @@ pub(crate) struct FarBlocks {
 
 impl FarBlocks {
     pub(crate) fn new(path: &Path, values: Vec<(f64, f64)>) -> Self {
-        Self { nodes: path.nodes.iter().map(|n| (n.re, n.im)).collect(), values }
+        Self {
+            nodes: path.nodes.iter().map(|n| (n.re, n.im)).collect(),
+            values,
+        }
     }
 }
 
@@ -111,11 +118,15 @@ impl TransferModel {
     pub fn is_sound(&self) -> bool {
         let (m, n, f) = (self.modes, self.columns, self.functionals());
         let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
-        let pairs = |values: &[(f64, f64)]| {
-            values.iter().all(|(a, b)| a.is_finite() && b.is_finite())
-        };
+        let pairs =
+            |values: &[(f64, f64)]| values.iter().all(|(a, b)| a.is_finite() && b.is_finite());
         let square = [
-            &self.p0_b1, &self.p0_b0, &self.p1_b1, &self.p1_b0, &self.c1, &self.c0,
+            &self.p0_b1,
+            &self.p0_b0,
+            &self.p1_b1,
+            &self.p1_b0,
+            &self.c1,
+            &self.c0,
         ];
         let near = &self.near;
         self.semichord.is_finite()
@@ -180,7 +191,9 @@ impl TransferModel {
         let (m, n) = (self.modes, self.columns);
         let linear = |one: &Block, zero: &Block| {
             let (one, zero) = (one.view(), zero.view());
-            Mat::from_fn(one.nrows(), one.ncols(), |i, j| s * one[(i, j)] + zero[(i, j)])
+            Mat::from_fn(one.nrows(), one.ncols(), |i, j| {
+                s * one[(i, j)] + zero[(i, j)]
+            })
         };
         let quadratic = linear(&self.p1_b1, &self.p1_b0);
         let mut q = linear(&self.p0_b1, &self.p0_b0) + linear(&self.c1, &self.c0);
@@ -193,7 +206,14 @@ impl TransferModel {
             });
             let jumps = solve_complex(system, linear(&self.jump1, &self.jump0))?;
             let rows = Mat::from_fn(m, n, |i, j| h[(n + i, j)] + s * h[(n + m + i, j)]);
-            matmul(&mut q, Accum::Add, &rows, &jumps, c64::new(1.0, 0.0), Par::Seq);
+            matmul(
+                &mut q,
+                Accum::Add,
+                &rows,
+                &jumps,
+                c64::new(1.0, 0.0),
+                Par::Seq,
+            );
         }
         for j in 0..m {
             for i in 0..m {
@@ -207,9 +227,17 @@ impl TransferModel {
     fn wake_response(&self, s: c64) -> Mat<c64> {
         let f = self.functionals();
         let mut h = vec![c64::new(0.0, 0.0); f * self.columns];
-        let decay: Vec<c64> = self.near.stations.iter().map(|xi| (-s * xi).exp()).collect();
-        for (&(column, station), values) in
-            self.near.entries.iter().zip(self.near.values.chunks_exact(f))
+        let decay: Vec<c64> = self
+            .near
+            .stations
+            .iter()
+            .map(|xi| (-s * xi).exp())
+            .collect();
+        for (&(column, station), values) in self
+            .near
+            .entries
+            .iter()
+            .zip(self.near.values.chunks_exact(f))
         {
             let factor = decay[station as usize];
             let sum = &mut h[column as usize * f..(column as usize + 1) * f];
@@ -218,7 +246,11 @@ impl TransferModel {
             }
         }
         let far = self.far(s);
-        for (&(re, im), values) in far.nodes.iter().zip(far.values.chunks_exact(f * self.columns)) {
+        for (&(re, im), values) in far
+            .nodes
+            .iter()
+            .zip(far.values.chunks_exact(f * self.columns))
+        {
             let factor = (-s * c64::new(re, im)).exp();
             for (total, &(re, im)) in h.iter_mut().zip(values) {
                 *total += factor * c64::new(re, im);
@@ -229,7 +261,11 @@ impl TransferModel {
 
     /// The path whose sector holds arg s.
     fn far(&self, s: c64) -> &FarBlocks {
-        if s.arg().to_degrees() <= SECTOR_LIMIT_DEG { &self.oscillating } else { &self.decaying }
+        if s.arg().to_degrees() <= SECTOR_LIMIT_DEG {
+            &self.oscillating
+        } else {
+            &self.decaying
+        }
     }
 }
 
@@ -251,10 +287,19 @@ pub(crate) fn solve_complex(mut a: Mat<c64>, mut b: Mat<c64>) -> Option<Mat<c64>
         stack,
         faer::Spec::default(),
     );
-    let smallest = (0..n).map(|i| a[(i, i)].norm()).fold(f64::INFINITY, f64::min);
+    let smallest = (0..n)
+        .map(|i| a[(i, i)].norm())
+        .fold(f64::INFINITY, f64::min);
     if n > 0 && (smallest.is_nan() || smallest < f64::MIN_POSITIVE) {
         return None;
     }
-    solve::solve_in_place(a.as_ref(), a.as_ref(), permutation, b.as_mut(), Par::Seq, stack);
+    solve::solve_in_place(
+        a.as_ref(),
+        a.as_ref(),
+        permutation,
+        b.as_mut(),
+        Par::Seq,
+        stack,
+    );
     Some(b)
 }

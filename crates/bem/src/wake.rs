@@ -70,13 +70,17 @@ pub(crate) struct Wake {
 impl Wake {
     /// Body triangle, corner and slot of every corner that carries a jump.
     pub(crate) fn body_corners(&self) -> impl Iterator<Item = (u32, usize, usize)> + '_ {
-        self.body.body_triangles.iter().zip(&self.body.corner_slots).flat_map(|(&t, slots)| {
-            slots
-                .iter()
-                .enumerate()
-                .filter(|(_, slot)| **slot != NO_SLOT)
-                .map(move |(corner, &slot)| (t, corner, slot as usize))
-        })
+        self.body
+            .body_triangles
+            .iter()
+            .zip(&self.body.corner_slots)
+            .flat_map(|(&t, slots)| {
+                slots
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, slot)| **slot != NO_SLOT)
+                    .map(move |(corner, &slot)| (t, corner, slot as usize))
+            })
     }
 }
 
@@ -149,7 +153,11 @@ impl<'a> Builder<'a> {
             threads: Vec::new(),
             slots: Vec::new(),
             slot_of: HashMap::new(),
-            far: FarWake { direction, anchors: Vec::new(), strips: Vec::new() },
+            far: FarWake {
+                direction,
+                anchors: Vec::new(),
+                strips: Vec::new(),
+            },
             far_threads: Vec::new(),
             sheet_vertices: Vec::new(),
             sheet_triangles: Vec::new(),
@@ -177,7 +185,9 @@ impl<'a> Builder<'a> {
         let wanted: Vec<f64> = (0..self.paths.paths.len())
             .flat_map(|p| self.path_distances(p))
             .collect();
-        let tails: Vec<f64> = (0..self.paths.cuts.len()).map(|c| self.tail_distance(c)).collect();
+        let tails: Vec<f64> = (0..self.paths.cuts.len())
+            .map(|c| self.tail_distance(c))
+            .collect();
         let farthest = self
             .chains
             .iter()
@@ -211,7 +221,9 @@ impl<'a> Builder<'a> {
     fn path_distances(&self, path: usize) -> Vec<f64> {
         let line = &self.paths.paths[path].vertices;
         let origin = self.position(line[0]);
-        line.iter().map(|&v| (self.position(v) - origin).dot(&self.direction)).collect()
+        line.iter()
+            .map(|&v| (self.position(v) - origin).dot(&self.direction))
+            .collect()
     }
 
     /// ξ where the wake leaves the body behind a cut.
@@ -226,8 +238,9 @@ impl<'a> Builder<'a> {
 
     fn build(mut self) -> Wake {
         let chain_threads = self.chain_threads();
-        let bridges: Vec<Vec<usize>> =
-            (0..self.paths.cuts.len()).map(|c| self.bridge_lines(c, &chain_threads)).collect();
+        let bridges: Vec<Vec<usize>> = (0..self.paths.cuts.len())
+            .map(|c| self.bridge_lines(c, &chain_threads))
+            .collect();
         let mut lines: Vec<SheetLine> = Vec::new();
         let mut bridge_index: Vec<Vec<usize>> = Vec::new();
         for (cut, threads) in bridges.iter().enumerate() {
@@ -260,7 +273,8 @@ impl<'a> Builder<'a> {
                 chain
                     .iter()
                     .map(|column| {
-                        self.threads.push(column.iter().map(|&c| (c, 1.0)).collect());
+                        self.threads
+                            .push(column.iter().map(|&c| (c, 1.0)).collect());
                         self.threads.len() - 1
                     })
                     .collect()
@@ -278,7 +292,11 @@ impl<'a> Builder<'a> {
     fn junction_thread(&self, path: usize, chain_threads: &[Vec<usize>]) -> usize {
         let end = self.paths.paths[path].end;
         let threads = &chain_threads[end.chain];
-        if end.last { threads[threads.len() - 1] } else { threads[0] }
+        if end.last {
+            threads[threads.len() - 1]
+        } else {
+            threads[0]
+        }
     }
 
     /// Threads of the vertices where two body lines meet; none for a line alone.
@@ -296,7 +314,11 @@ impl<'a> Builder<'a> {
                 if last > 0 && i == last {
                     return self.junction_thread(after, chain_threads);
                 }
-                let share = if last == 0 { 0.5 } else { i as f64 / last as f64 };
+                let share = if last == 0 {
+                    0.5
+                } else {
+                    i as f64 / last as f64
+                };
                 let (a, b) = (self.junction_column(before), self.junction_column(after));
                 self.threads.push(vec![(a, 1.0 - share), (b, share)]);
                 self.threads.len() - 1
@@ -316,7 +338,8 @@ impl<'a> Builder<'a> {
 
     /// Index of the station at ξ, which is one of them.
     fn station_at(&self, xi: f64) -> usize {
-        self.stations.partition_point(|x| *x < xi - 1e-9 * self.margin)
+        self.stations
+            .partition_point(|x| *x < xi - 1e-9 * self.margin)
     }
 
     fn far_line(&mut self, anchor: Vec3, thread: usize) -> u32 {
@@ -337,9 +360,11 @@ impl<'a> Builder<'a> {
         let n = chain.vertices.len();
         let mut lines = Vec::with_capacity(n);
         for (i, &thread) in threads.iter().enumerate() {
-            let path = self.paths.paths.iter().position(|p| {
-                p.end.chain == c && i == if p.end.last { n - 1 } else { 0 }
-            });
+            let path = self
+                .paths
+                .paths
+                .iter()
+                .position(|p| p.end.chain == c && i == if p.end.last { n - 1 } else { 0 });
             let line = match path {
                 Some(path) => {
                     self.junction_line(path, thread, bridges, bridge_lines, bridge_index)
@@ -363,7 +388,10 @@ impl<'a> Builder<'a> {
 
     /// Points on a streamline at the stations from `first` on.
     fn along(&self, anchor: Vec3, first: usize) -> Vec<Vec3> {
-        self.stations[first..].iter().map(|xi| anchor + *xi * self.direction).collect()
+        self.stations[first..]
+            .iter()
+            .map(|xi| anchor + *xi * self.direction)
+            .collect()
     }
 
     fn line(
@@ -380,7 +408,11 @@ impl<'a> Builder<'a> {
         }
         self.sheet_vertices.extend(points);
         let vertices = (from..self.sheet_vertices.len() as u32).collect();
-        SheetLine { first_station, vertices, far }
+        SheetLine {
+            first_station,
+            vertices,
+            far,
+        }
     }
 
     /// The sheet's inner edge: along the body to the tail, then straight on.
@@ -434,11 +466,18 @@ impl<'a> Builder<'a> {
                 }
             })
             .collect();
-        self.line(0, points, |r| if r < tail_station { thread } else { far_thread }, far)
+        self.line(
+            0,
+            points,
+            |r| if r < tail_station { thread } else { far_thread },
+            far,
+        )
     }
 
     fn on_path(&self, vertices: &[u32], knots: &[f64], xi: f64) -> Vec3 {
-        let i = knots.partition_point(|k| *k <= xi).clamp(1, knots.len() - 1);
+        let i = knots
+            .partition_point(|k| *k <= xi)
+            .clamp(1, knots.len() - 1);
         let share = (xi - knots[i - 1]) / (knots[i] - knots[i - 1]);
         let (a, b) = (self.position(vertices[i - 1]), self.position(vertices[i]));
         a + share * (b - a)
@@ -466,10 +505,13 @@ impl<'a> Builder<'a> {
             return NO_SLOT;
         }
         let slots = &mut self.slots;
-        *self.slot_of.entry((thread, xi.to_bits())).or_insert_with(|| {
-            slots.push(Slot { thread, xi });
-            slots.len() as u32 - 1
-        })
+        *self
+            .slot_of
+            .entry((thread, xi.to_bits()))
+            .or_insert_with(|| {
+                slots.push(Slot { thread, xi });
+                slots.len() as u32 - 1
+            })
     }
 
     /// Slots on the upper corners of the body's triangles along a cut.
@@ -491,7 +533,9 @@ impl<'a> Builder<'a> {
             slot_of_vertex.insert(*v, slot);
         }
         for upper in &self.surface.cut_corners[cut] {
-            let Some(&slot) = slot_of_vertex.get(&upper.vertex) else { continue };
+            let Some(&slot) = slot_of_vertex.get(&upper.vertex) else {
+                continue;
+            };
             for &(triangle, corner) in &upper.corners {
                 self.body_corners.entry(triangle).or_insert([NO_SLOT; 3])[corner] = slot;
             }
@@ -504,8 +548,10 @@ impl<'a> Builder<'a> {
         let mut body: Vec<(u32, [u32; 3])> = self.body_corners.into_iter().collect();
         body.sort_unstable();
         let body_triangles: Vec<u32> = body.iter().map(|(t, _)| *t).collect();
-        let body_panels: Vec<[u32; 3]> =
-            body_triangles.iter().map(|&t| self.mesh.triangles[t as usize]).collect();
+        let body_panels: Vec<[u32; 3]> = body_triangles
+            .iter()
+            .map(|&t| self.mesh.triangles[t as usize])
+            .collect();
         let corner_slots = self
             .sheet_triangles
             .iter()

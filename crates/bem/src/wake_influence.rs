@@ -94,7 +94,8 @@ impl WakeInfluence<'_> {
         let parts: Vec<WakeBlocks> = (0..PARTS)
             .into_par_iter()
             .map(|part| {
-                let range = (part * size).min(n_triangles)..((part + 1) * size).min(n_triangles);
+                let range =
+                    (part * size).min(n_triangles)..((part + 1) * size).min(n_triangles);
                 self.part(range, left, progress)
             })
             .collect();
@@ -123,7 +124,9 @@ impl WakeInfluence<'_> {
         let lines = self.wake.far.anchors.len();
         let mut blocks = WakeBlocks {
             near: Mat::zeros(functionals, self.wake.slots.len()),
-            far: paths.map(|p| Mat::zeros(functionals, lines * p.nodes.len())).to_vec(),
+            far: paths
+                .map(|p| Mat::zeros(functionals, lines * p.nodes.len()))
+                .to_vec(),
         };
         let mut evaluator = Evaluator::new(self);
         for first in range.clone().step_by(crate::galerkin::TASK_TRIANGLES) {
@@ -169,7 +172,14 @@ impl WakeInfluence<'_> {
             }
         }
         let near = MatRef::from_column_major_slice(&near, slots, n_points);
-        matmul(&mut blocks.near, Accum::Add, &tested, near.transpose(), 1.0, Par::Seq);
+        matmul(
+            &mut blocks.near,
+            Accum::Add,
+            &tested,
+            near.transpose(),
+            1.0,
+            Par::Seq,
+        );
         let tested = Mat::from_fn(tested.nrows(), tested.ncols(), |i, j| {
             c64::new(tested[(i, j)], 0.0)
         });
@@ -177,7 +187,14 @@ impl WakeInfluence<'_> {
             let width = lines * path.nodes.len();
             let values = MatRef::from_column_major_slice(values, width, n_points);
             let one = c64::new(1.0, 0.0);
-            matmul(block, Accum::Add, &tested, values.transpose(), one, Par::Seq);
+            matmul(
+                block,
+                Accum::Add,
+                &tested,
+                values.transpose(),
+                one,
+                Par::Seq,
+            );
         }
     }
 }
@@ -295,13 +312,10 @@ impl<'a> Evaluator<'a> {
     /// Influence of every streamline at every node of a path.
     fn far_row(&mut self, triangle: usize, q: usize, path: &Path, out: &mut [c64]) {
         let point = self.of.galerkin.tests[triangle].points[q];
-        self.of.wake.far.influence(
-            point,
-            &path.nodes,
-            &path.weights,
-            &mut self.distances,
-            out,
-        );
+        self.of
+            .wake
+            .far
+            .influence(point, &path.nodes, &path.weights, &mut self.distances, out);
     }
 
     /// Influence of every column at s = 0 at one point of the triangle last asked for.
