@@ -46,5 +46,5 @@ mod wake_influence;
 pub use error::{BemError, LaplaceError};
 pub use progress::{Progress, Silent};
 pub use solve::{Flow, Plan, Problem, Sizes, Solution, WakeDirection, plan, solve};
-pub use steady::{Loads, SpanwiseJump, SteadyState};
+pub use steady::{Loads, OnsetForm, SpanwiseJump, SteadyState};
 pub use transfer::TransferModel;

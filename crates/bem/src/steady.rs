@@ -120,15 +120,15 @@ pub struct SteadyState {
     pub lowest_pressure: (f64, usize),
     /// Force (m²) and moment (m³) as quadratic forms of the onset's components:
     /// entry [axis][a][b].
-    pub force_form: [[[f64; 3]; 3]; 3],
+    pub force_form: OnsetForm,
     /// As `force_form`.
-    pub moment_form: [[[f64; 3]; 3]; 3],
+    pub moment_form: OnsetForm,
 }
 
 impl SteadyState {
     /// Loads for another onset (unit vector), with the wake left where it is.
     pub fn loads_at(&self, stream: [f64; 3]) -> Loads {
-        let evaluate = |form: &[[[f64; 3]; 3]; 3]| {
+        let evaluate = |form: &OnsetForm| {
             std::array::from_fn(|axis| {
                 let mut sum = 0.0;
                 for (a, row) in form[axis].iter().enumerate() {
@@ -145,6 +145,9 @@ impl SteadyState {
         }
     }
 }
+
+/// A load along each axis as a quadratic form of the onset: [axis][a][b].
+pub type OnsetForm = [[[f64; 3]; 3]; 3];
 
 /// Gathers everything the user may want to know of the steady flow.
 pub(crate) struct SteadyReport<'a> {
@@ -192,7 +195,7 @@ impl SteadyReport<'_> {
     }
 
     /// −∮ c_p n dS with c_p = |U|² − |V|², as forms of U.
-    fn forms(&self) -> ([[[f64; 3]; 3]; 3], [[[f64; 3]; 3]; 3]) {
+    fn forms(&self) -> (OnsetForm, OnsetForm) {
         let mut force = [[[0.0; 3]; 3]; 3];
         let mut moment = [[[0.0; 3]; 3]; 3];
         for t in 0..self.galerkin.n_triangles() {

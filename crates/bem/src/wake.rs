@@ -256,11 +256,11 @@ impl<'a> Builder<'a> {
                 self.strip(&lines[pair[0]], &lines[pair[1]]);
             }
         }
-        for c in 0..self.chains.len() {
-            self.chain_sheet(c, &chain_threads[c], &bridges, &lines, &bridge_index);
+        for (c, threads) in chain_threads.iter().enumerate() {
+            self.chain_sheet(c, threads, &bridges, &lines, &bridge_index);
         }
-        for cut in 0..self.paths.cuts.len() {
-            self.body_jump(cut, &chain_threads, &bridges[cut]);
+        for (cut, threads) in bridges.iter().enumerate() {
+            self.body_jump(cut, &chain_threads, threads);
         }
         self.finish()
     }
