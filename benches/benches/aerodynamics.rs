@@ -13,7 +13,13 @@ fn main() {
 }
 
 fn wing(n_chord: usize, n_half_span: usize) -> TriMesh {
-    NacaWing { n_chord, n_half_span, ..NacaWing::default() }.structured().expect("a wing")
+    NacaWing {
+        n_chord,
+        n_half_span,
+        ..NacaWing::default()
+    }
+    .structured()
+    .expect("a wing")
 }
 
 /// Doublet and source influences of all panels at one point; divide by the panels.
@@ -24,10 +30,12 @@ fn panel_pairs(bencher: Bencher, n_chord: usize) {
     let mut scratch = panels.scratch();
     let mut doublets = vec![[0.0; 3]; panels.len()];
     let mut sources = doublets.clone();
-    bencher.counter(divan::counter::ItemsCount::new(panels.len())).bench_local(|| {
-        let point = black_box(Vec3::new(0.4, 0.3, 0.05));
-        panels.doublets_and_sources(point, &mut scratch, &mut doublets, &mut sources);
-    });
+    bencher
+        .counter(divan::counter::ItemsCount::new(panels.len()))
+        .bench_local(|| {
+            let point = black_box(Vec3::new(0.4, 0.3, 0.05));
+            panels.doublets_and_sources(point, &mut scratch, &mut doublets, &mut sources);
+        });
 }
 
 fn solution(n_chord: usize) -> Solution {

@@ -26,7 +26,11 @@ fn added_mass_of_a_sphere_converges_at_second_order() {
         .map(|&n| {
             let mesh = icosphere(n);
             let error = 1.0 - added_mass(&mesh, faer::c64::new(0.3, 2.0))[2] / exact;
-            println!("sphere, {} vertices: added mass {:+.3} %", mesh.vertices.len(), -100.0 * error);
+            println!(
+                "sphere, {} vertices: added mass {:+.3} %",
+                mesh.vertices.len(),
+                -100.0 * error
+            );
             error
         })
         .collect();
@@ -49,7 +53,11 @@ fn added_mass_of_ellipsoids() {
         let largest = exact.iter().copied().fold(0.0, f64::max);
         for (axis, (a, b)) in ["x", "y", "z"].iter().zip(found.iter().zip(&exact)) {
             let error = (a - b) / largest;
-            println!("{} {axis}: {a:.4}, exact {b:.4}, {:+.2} % of the largest", row["name"], 100.0 * error);
+            println!(
+                "{} {axis}: {a:.4}, exact {b:.4}, {:+.2} % of the largest",
+                row["name"],
+                100.0 * error
+            );
             assert!(error.abs() < 0.02);
         }
     }

@@ -13,8 +13,12 @@ fn modes(mesh: &TriMesh) -> Vec<SurfaceMode> {
     let shape = |y: f64| (y / 4.0) * (y / 4.0);
     vec![
         mode(mesh, "plunge", Frame::Inertial, |_| Vec3::z()),
-        mode(mesh, "pitch", Frame::Inertial, |x| Vec3::new(x.z, 0.0, 0.5 - x.x)),
-        mode(mesh, "bending", Frame::Inertial, move |x| shape(x.y) * Vec3::z()),
+        mode(mesh, "pitch", Frame::Inertial, |x| {
+            Vec3::new(x.z, 0.0, 0.5 - x.x)
+        }),
+        mode(mesh, "bending", Frame::Inertial, move |x| {
+            shape(x.y) * Vec3::z()
+        }),
         mode(mesh, "torsion", Frame::Inertial, move |x| {
             shape(x.y) * Vec3::new(x.z, 0.0, 0.5 - x.x)
         }),
@@ -22,7 +26,12 @@ fn modes(mesh: &TriMesh) -> Vec<SurfaceMode> {
 }
 
 fn transfer(thickness: f64) -> TransferModel {
-    let wing = NacaWing { thickness, n_chord: 20, n_half_span: 12, ..NacaWing::default() };
+    let wing = NacaWing {
+        thickness,
+        n_chord: 20,
+        n_half_span: 12,
+        ..NacaWing::default()
+    };
     let mesh = wing.structured().expect("a wing");
     solved(&mesh, &edges(&mesh), &modes(&mesh), Flow::default(), 0.5).transfer
 }
@@ -64,7 +73,12 @@ fn q_of_a_plate_anywhere_in_the_laplace_plane() {
             2.0 * limit(&thin)[(i, j)] - limit(&thick)[(i, j)]
         });
         let error = (&plate - &exact).norm_max() / exact.norm_max();
-        println!("g = {:+.1}, k = {:.1}: {:.2} % of max |Q|", p.re, p.im, 100.0 * error);
+        println!(
+            "g = {:+.1}, k = {:.1}: {:.2} % of max |Q|",
+            p.re,
+            p.im,
+            100.0 * error
+        );
         assert!(error < 0.05);
     }
 }

@@ -7,15 +7,23 @@ use std::path::PathBuf;
 
 /// A reference file of this test crate.
 pub fn data(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("data").join(name)
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("data")
+        .join(name)
 }
 
 /// Rows of a comma-separated file with `#` comments and one header line.
 pub fn csv(name: &str) -> Vec<std::collections::HashMap<String, String>> {
     let text = std::fs::read_to_string(data(name)).expect("reference file");
-    let mut lines = text.lines().filter(|l| !l.starts_with('#') && !l.trim().is_empty());
-    let header: Vec<String> =
-        lines.next().expect("header").split(',').map(|s| s.trim().to_owned()).collect();
+    let mut lines = text
+        .lines()
+        .filter(|l| !l.starts_with('#') && !l.trim().is_empty());
+    let header: Vec<String> = lines
+        .next()
+        .expect("header")
+        .split(',')
+        .map(|s| s.trim().to_owned())
+        .collect();
     lines
         .map(|line| {
             let cells = line.split(',').map(|s| s.trim().to_owned());
@@ -26,7 +34,11 @@ pub fn csv(name: &str) -> Vec<std::collections::HashMap<String, String>> {
 
 /// Trailing edges by shape with the default settings.
 pub fn edges(mesh: &TriMesh) -> Vec<TrailingEdge> {
-    trailing_edge::find_by_shape(mesh, &Topology::new(mesh), trailing_edge::Settings::default())
+    trailing_edge::find_by_shape(
+        mesh,
+        &Topology::new(mesh),
+        trailing_edge::Settings::default(),
+    )
 }
 
 /// A mode given by a field.
