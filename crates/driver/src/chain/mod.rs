@@ -8,4 +8,5 @@ pub(crate) mod own_forces;
 pub(crate) mod smooth;
 pub(crate) mod structure;
 pub(crate) mod surface;
+pub(crate) mod surrogate;
 pub(crate) mod sweep;

@@ -4,6 +4,7 @@ use super::exact::ExactForces;
 use super::forces::Forces;
 use super::smooth::smooth;
 use super::structure::{StructureData, system};
+use super::surrogate::Surrogate;
 use crate::atmosphere;
 use crate::case::{self, CaseFile, Refine};
 use crate::cli::Method;
@@ -11,7 +12,7 @@ use crate::failure::Failure;
 use crate::terminal::{Bar, Console};
 use fladder_stability::{
     self as stability, Aerodynamics, DEFAULT_DAMPING_LIMIT, OperatingPoint, PiecewiseQuadratic,
-    PkForm, RationalFit, Sweep, SweepError, SweepResult, System,
+    PkForm, Sweep, SweepError, SweepResult, System,
 };
 
 /// Air density of the case, kg/m³.
@@ -77,19 +78,34 @@ pub(crate) fn run(
             ..OperatingPoint::new(*speed, density)
         })
         .collect();
-    let (smooth, notes) = smooth(&forces.table).map_err(|error| unfit(file, &error))?;
-    console.notes(&notes);
-    let exact = exact_forces(file, forces, &smooth)?;
+    let (rational, notes) = smooth(&forces.table).map_err(|error| unfit(file, &error))?;
+    let exact = forces.transfer.as_ref().map(|transfer| ExactForces {
+        transfer,
+        slopes: &rational,
+    });
+    let surrogate = exact
+        .as_ref()
+        .and_then(|exact| Surrogate::new(exact, &forces.table));
+    let smooth = match (refine(file, forces)?, &exact, &surrogate) {
+        (Refine::Exact, Some(exact), _) => exact as &dyn Aerodynamics,
+        (_, _, Some(surrogate)) => {
+            console.say(format!(
+                "  roots are refined on an interpolant of the forces, misfit {:.0e}",
+                surrogate.misfit
+            ));
+            surrogate
+        }
+        _ => {
+            console.notes(&notes);
+            &rational
+        }
+    };
     let sweep = Sweep {
         structure: &system,
         schedule: &points,
         table: &forces.table,
         fit: &fit,
-        smooth: Some(
-            exact
-                .as_ref()
-                .map_or(&smooth, |exact| exact as &dyn Aerodynamics),
-        ),
+        smooth: Some(smooth),
         method: method.into(),
         pk_form: PkForm::default(),
     };
@@ -100,23 +116,23 @@ pub(crate) fn run(
     Ok(result)
 }
 
-/// The forces themselves, where the case asks for them.
-fn exact_forces<'a>(
-    file: &CaseFile,
-    forces: &'a Forces,
-    slopes: &'a RationalFit,
-) -> Result<Option<ExactForces<'a>>, Failure> {
-    let wanted = file.case.stability.as_ref().map(|swept| swept.refine);
-    match (wanted, &forces.transfer) {
-        (Some(Refine::Exact), Some(transfer)) => Ok(Some(ExactForces { transfer, slopes })),
-        (Some(Refine::Exact), None) => Err(Failure::input(
+/// On which forces roots are to be refined.
+fn refine(file: &CaseFile, forces: &Forces) -> Result<Refine, Failure> {
+    let wanted = file
+        .case
+        .stability
+        .as_ref()
+        .map(|swept| swept.refine)
+        .unwrap_or_default();
+    if wanted == Refine::Exact && forces.transfer.is_none() {
+        return Err(Failure::input(
             "`stability.refine = \"exact\"` with forces from a file",
             file.places.of("stability.refine"),
             "a file holds samples of Q, not Q itself",
             "leave the key out",
-        )),
-        _ => Ok(None),
+        ));
     }
+    Ok(wanted)
 }
 
 fn complete_system(
