@@ -13,7 +13,7 @@
 //! |---|---|
 //! | `panels` | influence of flat triangles |
 //! | `adjacency`, `body_path`, `cut` | surface cut open along trailing edges and body lines |
-//! | `stations`, `wake` | the sheet and what jump it carries |
+//! | `stations`, `wake`, `wake_builder` | the sheet and what jump it carries |
 //! | `contour`, `far_wake` | its semi-infinite part on a path in the complex plane |
 //! | `galerkin`, `near_field`, `dense` | the equations and their factorisation |
 //! | `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
@@ -41,6 +41,7 @@ mod stations;
 mod steady;
 mod transfer;
 mod wake;
+mod wake_builder;
 mod wake_influence;
 
 pub use error::{BemError, LaplaceError};
