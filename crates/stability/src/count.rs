@@ -9,7 +9,8 @@
 //! Two curves: a rectangle above $k = k_0$, and a box around the real axis to
 //! the right of the poles of $Q$, of which conjugate symmetry leaves the upper
 //! half. Left of the poles and below $k_0$ nothing is claimed: there the roots
-//! of the wake's lags crowd around the poles.
+//! of the wake's lags crowd around the poles. Where the poles are not known
+//! the box lies right of the origin.
 
 use faer::c64;
 
@@ -36,12 +37,39 @@ const AGREEMENT: f64 = 1e-6;
 /// Halvings before a piece is given up: a root lies on the curve.
 const MOST_HALVINGS: u32 = 24;
 
-/// Part of the region that the count covers, and what it found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Count {
-    /// Roots inside the curves less those listed.
-    pub(crate) missing: i64,
+/// Where roots are claimed to be complete.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Claim {
+    region: Region,
+    /// Real part of the rightmost pole; the origin where it is not known.
+    pole: Option<f64>,
 }
+
+impl Claim {
+    pub(crate) fn new(aerodynamics: &dyn Aerodynamics, region: Region) -> Self {
+        Self {
+            region,
+            pole: aerodynamics.rightmost_pole(),
+        }
+    }
+
+    /// Beside the cut, or left of the first pole near the real axis.
+    pub(crate) fn is_beside_cut(&self, p: c64) -> bool {
+        match self.pole {
+            Some(pole) => p.re < CUT_PART * pole && p.im < CUT_HEIGHT,
+            None => p.re < 0.0 && p.im < CUT_HEIGHT.min(CUT_OPENING * -p.re),
+        }
+    }
+}
+
+/// The cut begins at this part of the way to the first pole.
+const CUT_PART: f64 = 0.8;
+
+/// Roots lower than this are beside the cut.
+const CUT_HEIGHT: f64 = 1e-3;
+
+/// Where the cut begins at the origin, roots below this slope are beside it.
+const CUT_OPENING: f64 = 0.1;
 
 /// Counts the roots that are inside the curves but not in the list; `None`
 /// where a curve runs through a root.
@@ -50,8 +78,9 @@ pub(crate) fn missing_roots(
     aerodynamics: &dyn Aerodynamics,
     roots: &[Eigenpair],
     zeros: usize,
-    region: Region,
-) -> Option<Count> {
+    claim: &Claim,
+) -> Option<i64> {
+    let region = claim.region;
     let floor = clearest(&HEIGHTS, |height| {
         roots
             .iter()
@@ -74,32 +103,41 @@ pub(crate) fn missing_roots(
         zeros,
         hysteresis: Hysteresis::Included,
     };
-    let mut turns = upper.turn(&rectangle)?;
-    if let Some(pole) = aerodynamics.rightmost_pole() {
-        let start = clearest(&LEFT_PARTS, |part| {
-            let edge = (part * pole).max(left);
-            roots
-                .iter()
-                .map(|root| (root.p.re - edge).abs() / edge.abs())
-                .fold(1.0, f64::min)
-        });
-        let edge = (start * pole).max(left);
-        let half = [
-            corner(right, 0.0),
-            corner(right, floor),
-            corner(edge, floor),
-            corner(edge, 0.0),
-        ];
-        let lower = Curve {
-            hysteresis: Hysteresis::LeftOut,
-            ..upper
-        };
-        turns += 2.0 * lower.turn(&half)?;
-    }
-    Some(Count {
-        missing: (turns / std::f64::consts::TAU).round() as i64,
-    })
+    let lower = Curve {
+        hysteresis: Hysteresis::LeftOut,
+        ..upper
+    };
+    let edge = clearest(&LEFT_PARTS, |part| {
+        let edge = claim.left_edge(part);
+        roots
+            .iter()
+            .map(|root| (root.p.re - edge).abs() / edge.abs())
+            .fold(1.0, f64::min)
+    });
+    let edge = claim.left_edge(edge);
+    let half = [
+        corner(right, 0.0),
+        corner(right, floor),
+        corner(edge, floor),
+        corner(edge, 0.0),
+    ];
+    let turns = upper.turn(&rectangle)? + 2.0 * lower.turn(&half)?;
+    Some((turns / std::f64::consts::TAU).round() as i64)
 }
+
+impl Claim {
+    /// Left end of the box on the real axis: between the origin and the first
+    /// pole, or right of the origin where a cut begins there.
+    fn left_edge(&self, part: f64) -> f64 {
+        match self.pole {
+            Some(pole) => (part * pole).max(self.region.g[0]),
+            None => part * RIGHT_OF_CUT,
+        }
+    }
+}
+
+/// Distance from the origin at which the box ends where a cut begins there.
+const RIGHT_OF_CUT: f64 = 2e-3;
 
 /// The choice with the largest clearance, the first among equals.
 fn clearest(choices: &[f64], clearance: impl Fn(f64) -> f64) -> f64 {
@@ -267,9 +305,7 @@ mod tests {
         };
         let roots = oscillator_roots();
         let count = |roots: &[Eigenpair]| {
-            missing_roots(&reduced, &Still, roots, 1, region)
-                .unwrap()
-                .missing
+            missing_roots(&reduced, &Still, roots, 1, &Claim::new(&Still, region)).unwrap()
         };
         assert_eq!(count(&roots), 0);
         for index in 0..roots.len() {
@@ -284,11 +320,10 @@ mod tests {
         });
         assert_eq!(count(&more), -1);
         let unknown = FromFunction::new(5, |_| Mat::zeros(5, 5));
+        let claim = Claim::new(&unknown, region);
         assert_eq!(
-            missing_roots(&reduced, &unknown, &roots, 1, region)
-                .unwrap()
-                .missing,
-            0
+            missing_roots(&reduced, &unknown, &roots, 1, &claim),
+            Some(0)
         );
     }
 }

@@ -38,6 +38,7 @@ mod structure;
 mod sweep;
 mod system;
 mod track;
+mod vector_fit;
 
 pub use aerodynamics::{Aerodynamics, FromFunction};
 pub use eigenpair::Eigenpair;

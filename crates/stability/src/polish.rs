@@ -145,22 +145,28 @@ pub(crate) fn polish_all(
 ) -> Vec<Eigenpair> {
     let mut roots: Vec<Eigenpair> = Vec::new();
     for &seed in seeds {
-        let is_known = |p: c64, radius: f64| {
-            roots
-                .iter()
-                .any(|root| (root.p - p).norm() < radius * (1.0 + p.norm()))
-        };
         if let Some(root) = polish(reduced, aerodynamics, seed, None)
             && root.p.norm() >= ZERO_ROOT
-            && !is_known(root.p, SAME_ROOT)
         {
-            roots.push(root);
+            add_new(&mut roots, root);
         }
     }
     sort(&mut roots);
     roots
 }
 
+/// Adds a root unless it is in the list already.
+pub(crate) fn add_new(roots: &mut Vec<Eigenpair>, root: Eigenpair) {
+    let radius = SAME_ROOT * (1.0 + root.p.norm());
+    if roots
+        .iter()
+        .all(|other| (other.p - root.p).norm() >= radius)
+    {
+        roots.push(root);
+    }
+}
+
+/// By $k$, then by $g$.
 pub(crate) fn sort(roots: &mut [Eigenpair]) {
     roots.sort_by(|a, b| a.p.im.total_cmp(&b.p.im).then(a.p.re.total_cmp(&b.p.re)));
 }

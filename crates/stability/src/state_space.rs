@@ -23,8 +23,8 @@ pub(crate) fn all_roots(
             c64::new(matrix[(i, j)], 0.0)
         }))
     };
-    let coefficients: Vec<Mat<c64>> = fit.coefficients().iter().map(loads).collect();
-    let (rest, lags) = (loads(fit.at_rest()), coefficients.len() - 2);
+    let coefficients: Vec<Mat<c64>> = fit.coefficients.iter().map(loads).collect();
+    let (rest, lags) = (loads(&fit.at_rest), coefficients.len() - 2);
     let stiffness = reduced.stiffness(Hysteresis::LeftOut);
     let size = order * (2 + lags);
     let mut right = Mat::from_fn(order, size, |i, column| {
@@ -57,7 +57,7 @@ pub(crate) fn all_roots(
 /// part and minus twice the imaginary part of the lag.
 fn lag_factor(fit: &RationalFit, lag: usize) -> f64 {
     let mut factors = Vec::new();
-    for pole in fit.pole_list() {
+    for pole in &fit.poles {
         match pole {
             Pole::Real(_) => factors.push(1.0),
             Pole::Pair(_) => factors.extend([2.0, -2.0]),
@@ -68,7 +68,7 @@ fn lag_factor(fit: &RationalFit, lag: usize) -> f64 {
 
 fn fill_lags(matrix: &mut Mat<f64>, fit: &RationalFit, order: usize) {
     let mut block = 2;
-    for pole in fit.pole_list() {
+    for pole in &fit.poles {
         for i in 0..order {
             let at = block * order + i;
             matrix[(at, order + i)] = 1.0;

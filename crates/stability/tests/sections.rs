@@ -10,8 +10,8 @@ mod common;
 
 use common::{Section, data_path, number, range, section, speeds};
 use fladder_stability::{
-    DEFAULT_DAMPING_LIMIT, MethodResult, PiecewiseQuadratic, PkForm, RationalFit, Sweep,
-    SweepResult,
+    DEFAULT_DAMPING_LIMIT, GafPoint, GafTable, MethodResult, PiecewiseQuadratic, PkForm,
+    RationalFit, Sweep, SweepResult,
 };
 
 fn sweep(section: &Section, from: f64, to: f64, count: usize) -> SweepResult {
@@ -179,5 +179,50 @@ fn rational_fit_refines_the_sections() {
         }
         assert!(worst < 1e-5, "a root is missed by {worst}");
         check_flutter("rational", &result, &section, 1e-5);
+    }
+}
+
+/// Two, three or four samples, with or without k = 0, make a table on which
+/// every method runs: less accurate, without a fault.
+#[test]
+fn few_samples_are_enough_to_run() {
+    for (start, count) in [(0, 2), (0, 3), (2, 2), (2, 3), (2, 4), (0, 7)] {
+        let full = section("stability_section2_theodorsen.json", |g| g == 0.0);
+        let points = full
+            .table
+            .k()
+            .iter()
+            .zip(full.table.axis())
+            .skip(start)
+            .step_by(3)
+            .take(count)
+            .map(|(&k, q)| GafPoint {
+                g: 0.0,
+                k,
+                q: q.clone(),
+            })
+            .collect();
+        let modes = full.table.modes().to_vec();
+        let table = GafTable::new(1.0, 0.0, modes, points, vec![]).unwrap();
+        let fit = PiecewiseQuadratic::of(&table).unwrap();
+        let smooth = RationalFit::new(&table).unwrap();
+        assert_eq!(fit.notes().is_empty(), start == 0, "{:?}", fit.notes());
+        let schedule = speeds(range(1.5, 2.5, 5), full.density);
+        let result = Sweep {
+            structure: &full.system,
+            schedule: &schedule,
+            table: &table,
+            fit: &fit,
+            smooth: Some(&smooth),
+            method: fladder_stability::Method::Both,
+            pk_form: PkForm::RealMatrices,
+        }
+        .run(&())
+        .unwrap();
+        let branches = result.methods.p2.unwrap().branches.len();
+        println!("{count} samples from number {start}: {branches} branches");
+        if count == 7 {
+            assert!(branches >= 2);
+        }
     }
 }

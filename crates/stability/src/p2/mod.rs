@@ -12,7 +12,7 @@ mod patches;
 mod roots;
 
 pub use roots::Candidate;
-pub(crate) use roots::{REAL_ROOT, ZERO_ROOT, candidates, roots, roots_near};
+pub(crate) use roots::{REAL_ROOT, ZERO_ROOT, candidates, roots, roots_near, within_cells};
 
 use faer::{Mat, c64};
 

@@ -164,6 +164,20 @@ pub(crate) fn roots(
     })
 }
 
+/// Roots among wider candidates: those within 5 % of their cells, each once.
+pub(crate) fn within_cells(
+    fit: &PiecewiseQuadratic,
+    reduced: &Reduced,
+    found: &[Candidate],
+) -> Vec<Eigenpair> {
+    let near: Vec<Candidate> = found
+        .iter()
+        .copied()
+        .filter(|c| c.overshoot <= EDGE_TOLERANCE)
+        .collect();
+    deduplicate(fit, reduced, &near)
+}
+
 /// Roots of the cells near a place, for the search of a crossing; those that
 /// pass through zero are among them.
 pub(crate) fn roots_near(
