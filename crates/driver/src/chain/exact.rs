@@ -14,6 +14,24 @@ pub(crate) struct ExactForces<'a> {
     pub(crate) slopes: &'a RationalFit,
 }
 
+impl ExactForces<'_> {
+    /// $Q(p)$ for $k \ge 0$; on the branch cut its limit from above. `None`
+    /// where there is no value.
+    pub(crate) fn above(&self, p: c64) -> Option<Mat<c64>> {
+        let on_cut = p.im == 0.0 && p.re < 0.0;
+        let at = if on_cut {
+            c64::new(p.re, BESIDE_CUT * -p.re)
+        } else {
+            p
+        };
+        let order = self.slopes.order();
+        self.transfer
+            .q(at)
+            .ok()
+            .map(|q| q.submatrix(0, 0, order, order).to_owned())
+    }
+}
+
 impl Aerodynamics for ExactForces<'_> {
     fn order(&self) -> usize {
         self.slopes.order()
@@ -23,17 +41,13 @@ impl Aerodynamics for ExactForces<'_> {
     /// $Q$ has no value every entry is NaN, which no iteration takes for a
     /// root.
     fn q(&self, p: c64) -> Mat<c64> {
-        let on_cut = p.im == 0.0 && p.re < 0.0;
-        let at = if on_cut {
-            c64::new(p.re, BESIDE_CUT * -p.re)
-        } else {
-            p
-        };
         let order = self.order();
-        match self.transfer.q(at) {
-            Ok(q) if on_cut => Mat::from_fn(order, order, |i, j| c64::new(q[(i, j)].re, 0.0)),
-            Ok(q) => q.submatrix(0, 0, order, order).to_owned(),
-            Err(_) => Mat::from_fn(order, order, |_, _| c64::new(f64::NAN, f64::NAN)),
+        match self.above(p) {
+            Some(q) if p.im == 0.0 => {
+                Mat::from_fn(order, order, |i, j| c64::new(q[(i, j)].re, 0.0))
+            }
+            Some(q) => q,
+            None => Mat::from_fn(order, order, |_, _| c64::new(f64::NAN, f64::NAN)),
         }
     }
 
