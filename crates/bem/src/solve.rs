@@ -428,20 +428,21 @@ fn far_blocks(
     columns: usize,
 ) -> FarBlocks {
     let (f, n) = (far.nrows(), path.nodes.len());
-    let mut values = vec![(0.0, 0.0); f * columns * n];
+    let mut re = vec![0.0; f * columns * n];
+    let mut im = re.clone();
     for (line, &thread) in wake.far_threads.iter().enumerate() {
         for &(column, weight) in &wake.threads[thread] {
             for node in 0..n {
                 let from = (node * columns + column) * f;
-                for (i, value) in values[from..from + f].iter_mut().enumerate() {
+                for i in 0..f {
                     let entry = far[(i, line * n + node)];
-                    value.0 += weight * entry.re;
-                    value.1 += weight * entry.im;
+                    re[from + i] += weight * entry.re;
+                    im[from + i] += weight * entry.im;
                 }
             }
         }
     }
-    FarBlocks::new(path, values)
+    FarBlocks::new(path, re, im)
 }
 
 fn check_finite(problem: &Problem<'_>, transfer: &TransferModel) -> Result<(), BemError> {

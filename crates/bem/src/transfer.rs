@@ -65,15 +65,36 @@ pub(crate) struct NearBlocks {
 pub(crate) struct FarBlocks {
     /// ξ of each node.
     nodes: Vec<(f64, f64)>,
-    /// Node by node, column by column, one functional vector each.
-    values: Vec<(f64, f64)>,
+    /// Real parts, node by node, column by column, one functional vector each.
+    re: Vec<f64>,
+    /// Imaginary parts.
+    im: Vec<f64>,
 }
 
 impl FarBlocks {
-    pub(crate) fn new(path: &Path, values: Vec<(f64, f64)>) -> Self {
-        Self {
-            nodes: path.nodes.iter().map(|n| (n.re, n.im)).collect(),
-            values,
+    /// `re` and `im` in the order of the fields.
+    pub(crate) fn new(path: &Path, re: Vec<f64>, im: Vec<f64>) -> Self {
+        let nodes = path.nodes.iter().map(|n| (n.re, n.im)).collect();
+        Self { nodes, re, im }
+    }
+
+    /// Adds Σ e^{−sξ} (re + i im) to `sum`, whose two columns are real and imaginary part.
+    fn add(&self, s: c64, sum: &mut Mat<f64>) {
+        let (rows, nodes) = (sum.nrows(), self.nodes.len());
+        let decay = |i: usize| (-s * c64::new(self.nodes[i].0, self.nodes[i].1)).exp();
+        let real = Mat::from_fn(
+            nodes,
+            2,
+            |i, j| if j == 0 { decay(i).re } else { decay(i).im },
+        );
+        let turned = Mat::from_fn(
+            nodes,
+            2,
+            |i, j| if j == 0 { -decay(i).im } else { decay(i).re },
+        );
+        for (part, weights) in [(&self.re, &real), (&self.im, &turned)] {
+            let part = MatRef::from_column_major_slice(part, rows, nodes);
+            matmul(sum.as_mut(), Accum::Add, part, weights, 1.0, Par::Seq);
         }
     }
 }
@@ -118,8 +139,6 @@ impl TransferModel {
     pub fn is_sound(&self) -> bool {
         let (m, n, f) = (self.modes, self.columns, self.functionals());
         let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
-        let pairs =
-            |values: &[(f64, f64)]| values.iter().all(|(a, b)| a.is_finite() && b.is_finite());
         let square = [
             &self.p0_b1,
             &self.p0_b0,
@@ -144,9 +163,15 @@ impl TransferModel {
                 .iter()
                 .all(|&(c, s)| (c as usize) < n && (s as usize) < near.stations.len())
             && [&self.oscillating, &self.decaying].iter().all(|far| {
-                far.values.len() == far.nodes.len() * n * f
-                    && pairs(&far.nodes)
-                    && pairs(&far.values)
+                let size = far.nodes.len() * n * f;
+                far.re.len() == size
+                    && far.im.len() == size
+                    && far
+                        .nodes
+                        .iter()
+                        .all(|(re, im)| re.is_finite() && im.is_finite())
+                    && finite(&far.re)
+                    && finite(&far.im)
             })
     }
 
@@ -226,13 +251,15 @@ impl TransferModel {
     /// H(s): functionals × columns.
     fn wake_response(&self, s: c64) -> Mat<c64> {
         let f = self.functionals();
-        let mut h = vec![c64::new(0.0, 0.0); f * self.columns];
+        let mut h = Mat::<f64>::zeros(f * self.columns, 2);
+        self.far(s).add(s, &mut h);
         let decay: Vec<c64> = self
             .near
             .stations
             .iter()
             .map(|xi| (-s * xi).exp())
             .collect();
+        let (mut re, mut im) = (vec![0.0; f * self.columns], vec![0.0; f * self.columns]);
         for (&(column, station), values) in self
             .near
             .entries
@@ -240,23 +267,18 @@ impl TransferModel {
             .zip(self.near.values.chunks_exact(f))
         {
             let factor = decay[station as usize];
-            let sum = &mut h[column as usize * f..(column as usize + 1) * f];
-            for (total, value) in sum.iter_mut().zip(values) {
-                *total += factor * value;
+            let range = column as usize * f..(column as usize + 1) * f;
+            for (total, value) in re[range.clone()].iter_mut().zip(values) {
+                *total += factor.re * value;
+            }
+            for (total, value) in im[range].iter_mut().zip(values) {
+                *total += factor.im * value;
             }
         }
-        let far = self.far(s);
-        for (&(re, im), values) in far
-            .nodes
-            .iter()
-            .zip(far.values.chunks_exact(f * self.columns))
-        {
-            let factor = (-s * c64::new(re, im)).exp();
-            for (total, &(re, im)) in h.iter_mut().zip(values) {
-                *total += factor * c64::new(re, im);
-            }
-        }
-        MatRef::from_column_major_slice(&h, f, self.columns).to_owned()
+        Mat::from_fn(f, self.columns, |i, j| {
+            let at = j * f + i;
+            c64::new(h[(at, 0)] + re[at], h[(at, 1)] + im[at])
+        })
     }
 
     /// The path whose sector holds arg s.
