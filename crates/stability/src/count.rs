@@ -25,8 +25,11 @@ use crate::structure::{Hysteresis, Reduced};
 const HEIGHTS: [f64; 5] = [0.005, 0.004, 0.0062, 0.0033, 0.0075];
 const LEFT_PARTS: [f64; 5] = [0.5, 0.4, 0.62, 0.3, 0.75];
 
-/// Pieces into which each side of a curve is cut at first.
+/// Pieces into which each long side of a curve is cut at first.
 const PIECES: usize = 12;
+
+/// Pieces of a short side.
+const FEW_PIECES: usize = 3;
 
 /// A piece is halved until its phase turns by less than this.
 const LARGEST_TURN: f64 = std::f64::consts::FRAC_PI_3;
@@ -89,12 +92,11 @@ pub(crate) fn missing_roots(
     });
     let [left, right] = region.g;
     let corner = c64::new;
-    let rectangle = [
+    let sides = [
         corner(right, floor),
         corner(right, region.k_max),
         corner(left, region.k_max),
         corner(left, floor),
-        corner(right, floor),
     ];
     let upper = Curve {
         reduced,
@@ -115,13 +117,12 @@ pub(crate) fn missing_roots(
             .fold(1.0, f64::min)
     });
     let edge = claim.left_edge(edge);
-    let half = [
-        corner(right, 0.0),
-        corner(right, floor),
-        corner(edge, floor),
-        corner(edge, 0.0),
-    ];
-    let turns = upper.turn(&rectangle)? + 2.0 * lower.turn(&half)?;
+    let end = [corner(edge, floor), corner(edge, 0.0)];
+    let start = [corner(right, 0.0), corner(right, floor)];
+    let box_top = lower.turn(&over_the_origin(right, edge, floor), FEW_PIECES)?;
+    let half = lower.turn(&start, FEW_PIECES)? + box_top + lower.turn(&end, FEW_PIECES)?;
+    let bottom = upper.turn(&over_the_origin(left, right, floor), FEW_PIECES)?;
+    let turns = upper.turn(&sides, PIECES)? + bottom + 2.0 * half;
     Some((turns / std::f64::consts::TAU).round() as i64)
 }
 
@@ -138,6 +139,31 @@ impl Claim {
 
 /// Distance from the origin at which the box ends where a cut begins there.
 const RIGHT_OF_CUT: f64 = 2e-3;
+
+/// Corners on the line $k =$ `height` from `from` to `to`, close together near
+/// the origin: the roots of slow motions sit below, and would turn the phase
+/// by whole circles between two distant samples.
+fn over_the_origin(from: f64, to: f64, height: f64) -> Vec<c64> {
+    let (low, high) = (from.min(to), from.max(to));
+    let mut places = vec![low, high];
+    let mut distance = 0.5 * height;
+    while distance < low.abs().max(high.abs()) {
+        places.extend(
+            [-distance, distance]
+                .into_iter()
+                .filter(|g| *g > low && *g < high),
+        );
+        distance *= 2.0;
+    }
+    if low < 0.0 && high > 0.0 {
+        places.push(0.0);
+    }
+    places.sort_by(f64::total_cmp);
+    if from > to {
+        places.reverse();
+    }
+    places.into_iter().map(|g| c64::new(g, height)).collect()
+}
 
 /// The choice with the largest clearance, the first among equals.
 fn clearest(choices: &[f64], clearance: impl Fn(f64) -> f64) -> f64 {
@@ -182,12 +208,12 @@ impl Curve<'_> {
     }
 
     /// Change of phase along a chain of straight lines.
-    fn turn(&self, corners: &[c64]) -> Option<f64> {
+    fn turn(&self, corners: &[c64], pieces: usize) -> Option<f64> {
         let mut total = 0.0;
         for ends in corners.windows(2) {
-            let place = |piece: usize| ends[0] + (ends[1] - ends[0]) * graded(piece);
+            let place = |piece: usize| ends[0] + (ends[1] - ends[0]) * graded(piece, pieces);
             let mut start = (ends[0], self.direction(ends[0]));
-            for piece in 1..=PIECES {
+            for piece in 1..=pieces {
                 let end = (place(piece), self.direction(place(piece)));
                 total += self.turn_between(start, end, MOST_HALVINGS)?;
                 start = end;
@@ -214,9 +240,9 @@ impl Curve<'_> {
 
 /// Places along a side, 0 … 1, denser at both ends, where poles and zeros of
 /// the real axis are near.
-fn graded(piece: usize) -> f64 {
-    let t = piece as f64 / PIECES as f64;
-    if piece == PIECES {
+fn graded(piece: usize, pieces: usize) -> f64 {
+    let t = piece as f64 / pieces as f64;
+    if piece == pieces {
         1.0
     } else {
         t * t * (3.0 - 2.0 * t)
