@@ -6,14 +6,14 @@ use fladder_mesh::{Frame, SurfaceMode, Topology, TrailingEdge, TriMesh, Vec3, tr
 use std::path::PathBuf;
 
 /// A reference file of this test crate.
-pub fn data(name: &str) -> PathBuf {
+pub(crate) fn data(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
         .join("data")
         .join(name)
 }
 
 /// Rows of a comma-separated file with `#` comments and one header line.
-pub fn csv(name: &str) -> Vec<std::collections::HashMap<String, String>> {
+pub(crate) fn csv(name: &str) -> Vec<std::collections::HashMap<String, String>> {
     let text = std::fs::read_to_string(data(name)).expect("reference file");
     let mut lines = text
         .lines()
@@ -33,7 +33,7 @@ pub fn csv(name: &str) -> Vec<std::collections::HashMap<String, String>> {
 }
 
 /// Trailing edges by shape with the default settings.
-pub fn edges(mesh: &TriMesh) -> Vec<TrailingEdge> {
+pub(crate) fn edges(mesh: &TriMesh) -> Vec<TrailingEdge> {
     trailing_edge::find_by_shape(
         mesh,
         &Topology::new(mesh),
@@ -42,7 +42,7 @@ pub fn edges(mesh: &TriMesh) -> Vec<TrailingEdge> {
 }
 
 /// A mode given by a field.
-pub fn mode(
+pub(crate) fn mode(
     mesh: &TriMesh,
     name: &str,
     frame: Frame,
@@ -56,7 +56,7 @@ pub fn mode(
 }
 
 /// Solution with the given modes at an incidence.
-pub fn solved(
+pub(crate) fn solved(
     mesh: &TriMesh,
     edges: &[TrailingEdge],
     modes: &[SurfaceMode],
