@@ -197,6 +197,9 @@ fn complain(text: &str) {
 
 fn run(cli: Cli) -> Result<(), Failure> {
     watch_for_interrupts();
+    // Work is divided over threads outside of matrix operations; inside, another division
+    // would change the last bits of a decomposition with the number of threads.
+    faer::set_global_parallelism(faer::Par::Seq);
     let common = cli.common;
     if let Some(threads) = common.threads {
         rayon::ThreadPoolBuilder::new()
