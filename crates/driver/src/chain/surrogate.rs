@@ -402,7 +402,11 @@ impl Samples {
                     own * unit(is_imaginary) + other * unit(is_imaginary).conj()
                 }
             };
-            if row.is_multiple_of(2) { value.re } else { value.im }
+            if row.is_multiple_of(2) {
+                value.re
+            } else {
+                value.im
+            }
         };
         let loewner = Mat::from_fn(2 * mixtures * others.len(), unknowns.len(), entry);
         let triangle = loewner.qr().thin_R().to_owned();
