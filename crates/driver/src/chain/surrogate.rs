@@ -15,7 +15,7 @@
 //!   the cut the real part is taken, as for the forces themselves.
 
 use super::exact::ExactForces;
-use faer::{Mat, c64};
+use faer::{Mat, MatRef, c64};
 use fladder_stability::{Aerodynamics, GafTable};
 use rayon::prelude::*;
 
@@ -114,16 +114,16 @@ impl Interpolant {
     }
 
     fn blend(&self, factors: &[c64], divisor: c64) -> Mat<c64> {
-        let mut q = Mat::zeros(self.order, self.order);
+        let mut q = vec![c64::new(0.0, 0.0); self.order * self.order];
         for (s, factor) in self.support.iter().zip(factors) {
             let factor = factor / divisor;
-            for j in 0..self.order {
-                for i in 0..self.order {
-                    q[(i, j)] += factor * s.value[(i, j)];
+            for (sum, column) in q.chunks_exact_mut(self.order).zip(s.value.col_iter()) {
+                for (total, value) in sum.iter_mut().zip(column.iter()) {
+                    *total += factor * value;
                 }
             }
         }
-        q
+        MatRef::from_column_major_slice(&q, self.order, self.order).to_owned()
     }
 
     fn value(&self, p: c64) -> Mat<c64> {
