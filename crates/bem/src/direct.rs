@@ -12,7 +12,7 @@ use crate::transfer::solve_complex;
 use crate::wake_influence::WakeInfluence;
 use faer::{Mat, c64};
 use fladder_mesh::shapes::NacaWing;
-use fladder_mesh::{Frame, SurfaceMode, Topology, Vec3, trailing_edge};
+use fladder_mesh::{Frame, SurfaceMode, Topology, TrailingEdge, TriMesh, Vec3, trailing_edge};
 
 fn complex(matrix: &Mat<f64>) -> Mat<c64> {
     Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
@@ -93,12 +93,12 @@ fn modes(vertices: &[Vec3]) -> Vec<SurfaceMode> {
     ]
 }
 
-#[test]
-fn the_reduced_model_equals_the_complex_solve() {
+/// A coarse wing with its trailing edge and three modes.
+fn wing(sweep_deg: f64) -> (TriMesh, Vec<TrailingEdge>, Vec<SurfaceMode>) {
     let wing = NacaWing {
         n_chord: 6,
         n_half_span: 4,
-        sweep_deg: 20.0,
+        sweep_deg,
         ..NacaWing::default()
     };
     let mesh = wing.structured().expect("wing");
@@ -108,19 +108,35 @@ fn the_reduced_model_equals_the_complex_solve() {
         trailing_edge::Settings::default(),
     );
     let modes = modes(&mesh.vertices);
-    let problem = Problem {
-        mesh: &mesh,
-        trailing_edges: &edges,
-        modes: &modes,
-        flow: Flow {
-            alpha: 0.05,
-            beta: 0.02,
-        },
+    (mesh, edges, modes)
+}
+
+fn problem<'a>(
+    (mesh, edges, modes): &'a (TriMesh, Vec<TrailingEdge>, Vec<SurfaceMode>),
+    flow: Flow,
+) -> Problem<'a> {
+    Problem {
+        mesh,
+        trailing_edges: edges,
+        modes,
+        flow,
         wake_direction: WakeDirection::Freestream,
         body_lines: &[],
         semichord: 0.5,
         moment_point: Vec3::zeros(),
-    };
+    }
+}
+
+#[test]
+fn the_reduced_model_equals_the_complex_solve() {
+    let wing = wing(20.0);
+    let problem = problem(
+        &wing,
+        Flow {
+            alpha: 0.05,
+            beta: 0.02,
+        },
+    );
     let solution = solve(&problem, &Silent).expect("solved");
     for p in [
         c64::new(0.0, 0.3),
@@ -139,28 +155,8 @@ fn the_reduced_model_equals_the_complex_solve() {
 /// Q is analytic: its derivatives along g and along k agree (Cauchy–Riemann).
 #[test]
 fn q_is_analytic_in_the_laplace_plane() {
-    let wing = NacaWing {
-        n_chord: 6,
-        n_half_span: 4,
-        ..NacaWing::default()
-    };
-    let mesh = wing.structured().expect("wing");
-    let edges = trailing_edge::find_by_shape(
-        &mesh,
-        &Topology::new(&mesh),
-        trailing_edge::Settings::default(),
-    );
-    let modes = modes(&mesh.vertices);
-    let problem = Problem {
-        mesh: &mesh,
-        trailing_edges: &edges,
-        modes: &modes,
-        flow: Flow::default(),
-        wake_direction: WakeDirection::Freestream,
-        body_lines: &[],
-        semichord: 0.5,
-        moment_point: Vec3::zeros(),
-    };
+    let wing = wing(0.0);
+    let problem = problem(&wing, Flow::default());
     let transfer = solve(&problem, &Silent).expect("solved").transfer;
     let h = 1e-4;
     for (p, limit) in [

@@ -376,7 +376,6 @@ fn reduce(
         semichord: problem.semichord,
         modes: m,
         columns: surface.columns.len(),
-        inertial: fields.inertial.clone(),
         jump1: block(jumps_of(&selector, b1)),
         jump0: block(jumps_of(&selector, b0.as_ref())),
         p0_b1: block(functionals.p0.transpose() * b1),

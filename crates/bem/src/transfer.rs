@@ -107,8 +107,6 @@ pub struct TransferModel {
     pub(crate) semichord: f64,
     pub(crate) modes: usize,
     pub(crate) columns: usize,
-    /// Columns of modes with ∂u ≠ 0.
-    pub(crate) inertial: Vec<usize>,
     /// Kᵀ b₁ and Kᵀ b₀.
     pub(crate) jump1: Block,
     pub(crate) jump0: Block,
