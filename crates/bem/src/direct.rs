@@ -111,10 +111,10 @@ fn wing(sweep_deg: f64) -> (TriMesh, Vec<TrailingEdge>, Vec<SurfaceMode>) {
     (mesh, edges, modes)
 }
 
-fn problem<'a>(
-    (mesh, edges, modes): &'a (TriMesh, Vec<TrailingEdge>, Vec<SurfaceMode>),
+fn problem(
+    (mesh, edges, modes): &(TriMesh, Vec<TrailingEdge>, Vec<SurfaceMode>),
     flow: Flow,
-) -> Problem<'a> {
+) -> Problem<'_> {
     Problem {
         mesh,
         trailing_edges: edges,
