@@ -26,6 +26,10 @@ pub struct Structure {
     /// Whether the file is a half model.
     #[serde(default)]
     pub half: bool,
+    /// Whether the steady pressure turns and stretches with the surface in the columns of
+    /// elastic modes.
+    #[serde(default = "yes")]
+    pub pressure_turning: bool,
     /// First and last elastic mode, from 1.
     pub modes: Option<[usize; 2]>,
     /// Structural damping coefficient, one or one per elastic mode.
@@ -39,6 +43,10 @@ pub struct Structure {
     pub rigid_body: Option<RigidBody>,
     /// Matrices given outright.
     pub matrices: Option<Matrices>,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// Units of the structure's files.

@@ -13,6 +13,8 @@ pub(crate) struct Aircraft {
     pub(crate) surface: Surface,
     pub(crate) structure: StructureData,
     pub(crate) modes: Vec<SurfaceMode>,
+    /// Modes in whose columns the steady pressure turns with the surface: the elastic ones.
+    pub(crate) turning: Vec<bool>,
     /// How the elastic modes came to the surface.
     pub(crate) transfer: Option<TransferReport>,
 }
@@ -39,6 +41,12 @@ impl Aircraft {
             modes.extend(modal::rigid_modes(body, vertices));
         }
         let mut report = None;
+        let rigid = modes.len();
+        let turns = file
+            .case
+            .structure
+            .as_ref()
+            .is_none_or(|given| given.pressure_turning);
         if let Some(model) = &structure.model {
             let given = file
                 .case
@@ -51,6 +59,7 @@ impl Aircraft {
             modes.extend(elastic);
             report = Some(transferred);
         }
+        let elastic = rigid..modes.len();
         for (number, mode) in file.case.modes.analytic.iter().enumerate() {
             let place = format!("modes.analytic.{number}");
             let shape = analytic(mode).on(vertices).map_err(|error| {
@@ -71,10 +80,14 @@ impl Aircraft {
                 "add [structure] with a result file or mass properties, or [[modes.analytic]]",
             ));
         }
+        let turning = (0..modes.len())
+            .map(|mode| turns && elastic.contains(&mode))
+            .collect();
         Ok(Self {
             surface,
             structure,
             modes,
+            turning,
             transfer: report,
         })
     }
