@@ -12,8 +12,10 @@
 //! | module | idea |
 //! |---|---|
 //! | `panels` | influence of flat triangles |
-//! | `adjacency`, `body_path`, `cut` | surface cut open along trailing edges and body lines |
-//! | `stations`, `wake`, `wake_builder`, `wake_sheet` | the sheet and what jump it carries |
+//! | `adjacency`, `cut` | surface cut open along trailing edges |
+//! | `body_path`, `body_trace`, `body_node`, `carry` | lines that carry a jump down a body |
+//! | `stations`, `wake`, `wake_builder`, `sheet_lines`, `wake_sheet` | the sheet and what jump it carries |
+//! | `strike` | sheets that run into bodies |
 //! | `contour`, `far_wake` | its semi-infinite part on a path in the complex plane |
 //! | `galerkin`, `near_field`, `dense` | the equations and their factorisation |
 //! | `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
@@ -22,8 +24,11 @@
 //! Nothing here knows about files, clocks or terminals.
 
 mod adjacency;
+mod body_node;
 mod body_path;
+mod body_trace;
 mod boundary;
+mod carry;
 mod contour;
 mod cut;
 mod dense;
@@ -36,9 +41,11 @@ mod near_field;
 pub mod panels;
 mod pressure;
 mod progress;
+mod sheet_lines;
 mod solve;
 mod stations;
 mod steady;
+mod strike;
 mod transfer;
 mod wake;
 mod wake_builder;

@@ -11,6 +11,7 @@ use crate::cut::CutSurface;
 use crate::error::BemError;
 use crate::far_wake::FarWake;
 use crate::panels::PanelSet;
+use crate::strike::Strikes;
 use crate::wake_builder::Builder;
 use crate::wake_sheet::WakeSheet;
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
@@ -100,7 +101,15 @@ pub(crate) fn cut_and_wake(
         named: body_lines,
     };
     let paths = tracer.trace()?;
-    let surface = CutSurface::new(mesh, &adjacency, chains, &paths)?;
-    let wake = Builder::new(mesh, chains, &surface, &paths, direction, semichord).build();
+    let surface = CutSurface::new(mesh, &adjacency, chains, &paths, false)?;
+    let strikes = Strikes {
+        mesh,
+        adjacency: &adjacency,
+        chains,
+        paths: &paths,
+        direction,
+    };
+    let wake =
+        Builder::new(mesh, chains, &surface, &paths, direction, semichord).build(&strikes)?;
     Ok((surface, wake))
 }

@@ -294,7 +294,15 @@ impl<'a> Evaluator<'a> {
             &mut self.body_scratch,
             &mut self.body_values,
         );
-        if let Ok(own) = wake.body.body_triangles.binary_search(&(triangle as u32)) {
+        // A triangle is there once for each jump that a corner carries.
+        let first = wake
+            .body
+            .body_triangles
+            .partition_point(|&t| (t as usize) < triangle);
+        let same = wake.body.body_triangles[first..]
+            .iter()
+            .take_while(|&&t| t as usize == triangle);
+        for own in first..first + same.count() {
             for (q, values) in self.body_values.iter_mut().enumerate() {
                 let free = self.of.free_terms[3 * triangle + q];
                 for (value, shape) in values[own].iter_mut().zip(&POINTS[q]) {
