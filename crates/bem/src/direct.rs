@@ -8,6 +8,7 @@ use crate::near_field::POINTS;
 use crate::onset::OnsetBasis;
 use crate::pressure::Functionals;
 use crate::progress::Silent;
+use crate::shape_change::ShapeChange;
 use crate::solve::{Flow, Problem, Symmetry, WakeDirection, lay_out, solve};
 use crate::steady::UnitOnsets;
 use crate::surface_flow::surface_flow;
@@ -78,8 +79,9 @@ fn direct(problem: &Problem<'_>, p: c64) -> Mat<c64> {
         let column = surface.columns[j];
         steady[(column.upper as usize, a)] - steady[(column.lower as usize, a)]
     });
-    let onsets = UnitOnsets::new(&galerkin, &wake, &steady, jumps);
-    let functionals = Functionals::new(&galerkin, &fields, &onsets, &wake);
+    let onsets = UnitOnsets::new(&galerkin, &wake, steady, jumps);
+    let functionals =
+        Functionals::new(&galerkin, &fields, &onsets, &wake, ShapeChange::Attached);
     let s = p / problem.semichord;
     let right = Mat::from_fn(n, m, |i, j| {
         let zero = fields.inertial.iter().position(|&k| k == j);

@@ -7,6 +7,7 @@ use crate::error::BemError;
 use crate::galerkin::Galerkin;
 use crate::onset::OnsetBasis;
 use crate::progress::Progress;
+use crate::shape_change::{ShapeChange, check_symmetry, correct_potentials};
 use crate::solve::{Problem, check, lay_out};
 use crate::steady::UnitOnsets;
 use crate::transfer::solve_complex;
@@ -42,6 +43,7 @@ impl Prepared<DenseOperator> {
         progress: &dyn Progress,
     ) -> Result<Self, BemError> {
         check(problem)?;
+        check_symmetry(problem)?;
         let (surface, wake) = lay_out(problem)?;
         let selector = selector(&surface);
         let (flow, motion) = (problem.symmetry.of_flow(), problem.symmetry.of_motion());
@@ -67,14 +69,18 @@ impl Prepared<DenseOperator> {
             drop(steady);
             (Body::factorise(galerkin, &sources, progress)?, onsets)
         };
-        Ok(Self {
+        let mut prepared = Self {
             surface,
             wake,
             selector,
             fields,
             body,
             onsets,
-        })
+        };
+        if problem.shape_change == ShapeChange::Exact {
+            correct_potentials(&mut prepared, problem, progress)?;
+        }
+        Ok(prepared)
     }
 
     /// Frees the operator's memory.
@@ -169,7 +175,7 @@ impl Body<DenseOperator> {
             jumps = Mat::from_fn(n, 3, |i, j| solved[(i, j)].re);
             phi += &response * &jumps;
         }
-        Ok(UnitOnsets::new(&self.galerkin, wake, &phi, jumps))
+        Ok(UnitOnsets::new(&self.galerkin, wake, phi, jumps))
     }
 }
 

@@ -20,6 +20,8 @@ pub(crate) struct UnitOnsets {
     pub(crate) velocities: Vec<[Vec3; 3]>,
     /// κ₀: columns × 3.
     pub(crate) jumps: Mat<f64>,
+    /// φ₀ without the jumps carried on bodies: vertices × 3.
+    pub(crate) potentials: Mat<f64>,
 }
 
 impl UnitOnsets {
@@ -27,7 +29,7 @@ impl UnitOnsets {
     pub(crate) fn new(
         galerkin: &Galerkin,
         wake: &Wake,
-        potentials: &Mat<f64>,
+        potentials: Mat<f64>,
         jumps: Mat<f64>,
     ) -> Self {
         let carried = carried_jumps(galerkin, wake, &jumps);
@@ -47,7 +49,11 @@ impl UnitOnsets {
                 })
             })
             .collect();
-        Self { velocities, jumps }
+        Self {
+            velocities,
+            jumps,
+            potentials,
+        }
     }
 
     /// V₀ on a triangle for the onset `stream`.
@@ -65,13 +71,12 @@ fn carried_jumps(
 ) -> std::collections::HashMap<(u32, usize), [f64; 3]> {
     let mut carried = std::collections::HashMap::new();
     for (triangle, corner, slot) in wake.body_corners() {
-        let mut value = [0.0; 3];
+        let value = carried.entry((triangle, corner)).or_insert([0.0; 3]);
         for &(column, weight) in &wake.threads[wake.slots[slot].thread] {
             for (axis, v) in value.iter_mut().enumerate() {
                 *v += weight * jumps[(column, axis)];
             }
         }
-        carried.insert((triangle, corner), value);
     }
     debug_assert!(
         carried
@@ -273,22 +278,19 @@ impl SteadyReport<'_> {
     }
 
     fn spanwise(&self, c: usize, chain: &fladder_mesh::TrailingEdge) -> SpanwiseJump {
-        let columns = &self.surface.chain_columns[c];
-        let jumps = columns
+        let jumps = self.surface.chain_jumps[c]
             .iter()
-            .map(|column| column.map_or(0.0, |j| self.column_jump(j)))
+            .map(|jump| jump.iter().map(|&(j, w)| w * self.column_jump(j)).sum())
             .collect();
         let positions = chain
             .vertices
             .iter()
             .map(|&v| self.surface.vertices[v as usize].into())
             .collect();
-        let on_body = [columns.first(), columns.last()]
-            .map(|end| !chain.closed && end.is_some_and(Option::is_some));
         SpanwiseJump {
             positions,
             jumps,
-            on_body,
+            on_body: self.surface.on_body[c],
         }
     }
 
