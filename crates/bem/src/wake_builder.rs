@@ -277,9 +277,13 @@ impl<'a> Builder<'a> {
     /// The sheet's inner edge: along the body to the line's end, then straight on.
     fn junction_line(&mut self, path: usize) -> SheetLine {
         let line = &self.paths.paths[path];
+        // An edge across may lead back by the stream's incidence: it counts as level.
         let knots: Vec<f64> = line.vertices[..=line.whole]
             .iter()
-            .map(|&v| self.distance(path, self.position(v)))
+            .scan(0.0, |level: &mut f64, &v| {
+                *level = level.max(self.distance(path, self.position(v)));
+                Some(*level)
+            })
             .collect();
         let corners: Vec<Vec3> = line.vertices[..=line.whole]
             .iter()

@@ -126,15 +126,25 @@ pub(crate) fn star(arms: &[(f64, f64)]) -> TriMesh {
     .expect("a star")
 }
 
-/// A body 4 m long.
+/// A body 4 m long, with a dozen cells around it and more where there are more than three
+/// arms.
 pub(crate) fn wing_body(tail: Tail, arms: Vec<Arm>) -> TriMesh {
+    finer_wing_body(tail, arms, 1)
+}
+
+/// As [`wing_body`] with cells divided.
+pub(crate) fn finer_wing_body(tail: Tail, mut arms: Vec<Arm>, fine: usize) -> TriMesh {
+    for arm in &mut arms {
+        arm.n_span *= fine;
+    }
+    let n_around = fine * (12 / arms.len()).max(4);
     WingBody {
-        stations: WingBody::even_stations(4.0, 0.16, &arms),
+        stations: WingBody::even_stations(4.0, 0.16 / fine as f64, &arms),
         half_width: 0.25,
         half_height: 0.3,
         tail,
         arms,
-        n_around: 4,
+        n_around,
     }
     .structured()
     .expect("a body")
@@ -189,7 +199,7 @@ impl Dice {
 
 /// The same body with edges flipped and vertices moved by chance, wings left as they are:
 /// no row of edges is left along it.
-pub(crate) fn scrambled(mesh: &TriMesh, seed: u64) -> TriMesh {
+pub(crate) fn scrambled(mesh: &TriMesh, seed: u64, shift: f64) -> TriMesh {
     let mut mesh = mesh.clone();
     let mut dice = Dice(seed);
     // On the body's ellipse; wings reach beyond it.
@@ -231,7 +241,7 @@ pub(crate) fn scrambled(mesh: &TriMesh, seed: u64) -> TriMesh {
             .collect();
         let other = around[(dice.roll() * around.len() as f64) as usize % around.len()];
         let step = mesh.vertices[other as usize] - mesh.vertices[v];
-        mesh.vertices[v] += 0.2 * dice.roll() * step;
+        mesh.vertices[v] += shift * dice.roll() * step;
     }
     mesh
 }
