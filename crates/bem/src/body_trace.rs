@@ -41,7 +41,7 @@ const FAR_SIDE: f64 = 100.0;
 pub(crate) struct Downstream<'a> {
     pub(crate) vertices: &'a [Vec3],
     pub(crate) adjacency: &'a Adjacency<'a>,
-    pub(crate) downstream: Vec3,
+    pub(crate) stream: Vec3,
     /// Vertices of the trailing edge from which the line comes: it never returns there.
     pub(crate) own: &'a [u32],
     /// Vertices of trailing edges, where a line ends.
@@ -56,9 +56,9 @@ impl Downstream<'_> {
     pub(crate) fn line(&self, junction: u32, beside: u32) -> Option<Vec<u32>> {
         let origin = self.position(junction);
         let outward = self.position(beside) - origin;
-        let outward = outward - self.downstream * outward.dot(&self.downstream);
+        let outward = outward - self.stream * outward.dot(&self.stream);
         let outward = outward.try_normalize(0.0)?;
-        let across = self.downstream.cross(&outward);
+        let across = self.stream.cross(&outward);
         let mut known: Known = HashMap::from([(junction, (0.0, junction))]);
         let mut open = BinaryHeap::from([Reverse((Ordered(0.0), junction))]);
         let mut end: Option<(f64, u32)> = None;
@@ -70,7 +70,7 @@ impl Downstream<'_> {
                 Steps::DeadEnd => {}
                 Steps::End if v == junction => {}
                 Steps::End => {
-                    let advance = (self.position(v) - origin).dot(&self.downstream);
+                    let advance = (self.position(v) - origin).dot(&self.stream);
                     let score = cost - ADVANCE * advance;
                     if end.is_none_or(|(least, _)| score < least) {
                         end = Some((score, v));
@@ -101,7 +101,7 @@ impl Downstream<'_> {
         let outside = offset.dot(&outward).max(0.0);
         let off = offset.dot(&across).hypot(outside) / self.cell(w);
         let inward = (-self.normal(w).dot(&outward)).max(0.0);
-        let runs_down = step.dot(&self.downstream) > FOLLOW_COSINE * step.norm();
+        let runs_down = step.dot(&self.stream) > FOLLOW_COSINE * step.norm();
         let factor = if runs_down { 1.0 } else { ACROSS_PRICE };
         factor * step.norm() * (1.0 + off * off + FAR_SIDE * inward * inward)
     }
@@ -117,7 +117,7 @@ impl Downstream<'_> {
         let here = self.position(v);
         let cosine = |w: u32| {
             let step = self.position(w) - here;
-            step.dot(&self.downstream) / step.norm()
+            step.dot(&self.stream) / step.norm()
         };
         let neighbours = self.adjacency.neighbours(v);
         let mut on = neighbours.iter().filter(|&&w| cosine(w) > FOLLOW_COSINE);
