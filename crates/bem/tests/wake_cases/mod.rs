@@ -227,10 +227,7 @@ pub(crate) fn scrambled(mesh: &TriMesh, seed: u64, shift: f64) -> TriMesh {
             }
         }
     }
-    for v in 0..mesh.vertices.len() {
-        if fixed[v] {
-            continue;
-        }
+    for (v, _) in fixed.iter().enumerate().filter(|(_, is_fixed)| !**is_fixed) {
         let around: Vec<u32> = mesh
             .triangles
             .iter()
