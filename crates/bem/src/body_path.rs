@@ -150,7 +150,7 @@ impl Tracer<'_> {
     /// Finds the junctions and the lines from them.
     pub(crate) fn trace(&self) -> Result<BodyPaths, BemError> {
         let trailing: HashSet<(u32, u32)> = self.trailing_edges().collect();
-        let degree = self.edges_at(&trailing);
+        let degree = edges_at(&trailing);
         let named = self.named_neighbours();
         let mut ends = Vec::new();
         for (chain, edge) in self.chains.iter().enumerate().filter(|(_, c)| !c.closed) {
@@ -200,16 +200,6 @@ impl Tracer<'_> {
             .flat_map(|c| c.edges().map(|[a, b]| undirected(a, b)))
     }
 
-    /// Number of trailing edges at each of their vertices.
-    fn edges_at(&self, trailing: &HashSet<(u32, u32)>) -> HashMap<u32, usize> {
-        let mut degree = HashMap::new();
-        for &(a, b) in trailing {
-            *degree.entry(a).or_insert(0) += 1;
-            *degree.entry(b).or_insert(0) += 1;
-        }
-        degree
-    }
-
     /// Whether some direction on the surface at `vertex`, off the trailing edge itself,
     /// lies close to the stream.
     fn surface_goes_on(&self, vertex: u32, trailing: &HashSet<(u32, u32)>) -> bool {
@@ -249,7 +239,7 @@ impl Tracer<'_> {
         let search = Downstream {
             vertices: self.vertices,
             adjacency: self.adjacency,
-            downstream: self.downstream,
+            stream: self.downstream,
             own: chain,
             barrier,
         };
@@ -311,6 +301,16 @@ impl Tracer<'_> {
         }
         Ok(line)
     }
+}
+
+/// Number of trailing edges at each of their vertices.
+fn edges_at(trailing: &HashSet<(u32, u32)>) -> HashMap<u32, usize> {
+    let mut degree = HashMap::new();
+    for &(a, b) in trailing {
+        *degree.entry(a).or_insert(0) += 1;
+        *degree.entry(b).or_insert(0) += 1;
+    }
+    degree
 }
 
 /// The vertex at one end of an open trailing edge.

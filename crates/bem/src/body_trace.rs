@@ -1,33 +1,47 @@
 //! The line of mesh edges down a body that stays closest to the plane of a wake.
 //!
 //! Through the junction runs the plane of the stream and of the trailing edge. Of all lines
-//! whose every edge runs downstream, the one is taken with the least
+//! of edges that run downstream or, where they lead back to the plane, across, the one is
+//! taken with the least
 //!
-//! $$ \sum L\,\big(1 + (d/\ell)^2\big) - \Gamma\,\mathbf u\cdot\Delta\mathbf x , $$
+//! $$ \sum L\,\big(1 + (d/\ell)^2 + F\max(0, -\mathbf n\cdot\mathbf e)^2\big)
+//!    - \Gamma\,\mathbf u\cdot(\mathbf x_{end} - \mathbf x_J) , $$
 //!
 //! L the edge's length, d its end's distance from the plane (and, outboard of the junction,
-//! from the junction), ℓ the mean length of the edges at that end. On a mesh whose edges
-//! follow the plane it is that row of edges; on any other it stays within a cell of the
-//! plane where the body does. It ends where no edge runs downstream, or on a trailing edge;
-//! Γ decides between several ends: a line goes on rather than end on a bump or a fin as
-//! long as that leads it less than √Γ cells off.
+//! from the junction), ℓ the mean length of the edges and n the normal at that end, e the
+//! direction of the trailing edge away from the junction, across the stream: where the
+//! normal points against it the sheet would start inside the body. On a mesh whose edges
+//! follow the plane it is that row of edges; on any other it stays within a cell or two of
+//! the plane where the body does. It ends where no edge runs downstream, or on a trailing
+//! edge; Γ decides between several ends: a line goes on rather than end on a bump or a fin
+//! as long as that leads it less than √Γ cells off.
 
 use crate::adjacency::Adjacency;
 use fladder_mesh::Vec3;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashMap, HashSet};
 
-/// Smallest cosine between stream and mesh edge with which a line is followed on: above
-/// the slope of a base that is cut square, at the incidences of linear theory.
+/// Smallest cosine between stream and mesh edge with which a line goes on: above the slope
+/// of a base that is cut square, at the incidences of linear theory.
 const FOLLOW_COSINE: f64 = 0.2;
+
+/// Smallest cosine of an edge across: no way back upstream but for the incidence.
+const ACROSS_COSINE: f64 = -0.1;
+
+/// What an edge across costs, in edges downstream.
+const ACROSS_PRICE: f64 = 2.0;
 
 /// Γ: gain per length of advance.
 const ADVANCE: f64 = 10.0;
+
+/// F: what a line on the far side of the body costs, as much as ten cells off its plane.
+const FAR_SIDE: f64 = 100.0;
 
 /// Search over the edges that run downstream.
 pub(crate) struct Downstream<'a> {
     pub(crate) vertices: &'a [Vec3],
     pub(crate) adjacency: &'a Adjacency<'a>,
-    pub(crate) downstream: Vec3,
+    pub(crate) stream: Vec3,
     /// Vertices of the trailing edge from which the line comes: it never returns there.
     pub(crate) own: &'a [u32],
     /// Vertices of trailing edges, where a line ends.
@@ -42,45 +56,54 @@ impl Downstream<'_> {
     pub(crate) fn line(&self, junction: u32, beside: u32) -> Option<Vec<u32>> {
         let origin = self.position(junction);
         let outward = self.position(beside) - origin;
-        let outward = outward - self.downstream * outward.dot(&self.downstream);
+        let outward = outward - self.stream * outward.dot(&self.stream);
         let outward = outward.try_normalize(0.0)?;
-        let across = self.downstream.cross(&outward);
-        // Every edge advances, so that in the order of distance each vertex is final when
-        // its turn comes.
+        let across = self.stream.cross(&outward);
         let mut known: Known = HashMap::from([(junction, (0.0, junction))]);
-        let mut open = BTreeSet::from([(Ordered(0.0), junction)]);
+        let mut open = BinaryHeap::from([Reverse((Ordered(0.0), junction))]);
         let mut end: Option<(f64, u32)> = None;
-        while let Some((Ordered(_), v)) = open.pop_first() {
-            let cost = known[&v].0;
+        while let Some(Reverse((Ordered(cost), v))) = open.pop() {
+            if cost > known[&v].0 {
+                continue;
+            }
             match self.steps(v) {
                 Steps::DeadEnd => {}
                 Steps::End if v == junction => {}
                 Steps::End => {
-                    if end.is_none_or(|(least, _)| cost < least) {
-                        end = Some((cost, v));
+                    let advance = (self.position(v) - origin).dot(&self.stream);
+                    let score = cost - ADVANCE * advance;
+                    if end.is_none_or(|(least, _)| score < least) {
+                        end = Some((score, v));
                     }
                 }
                 Steps::On(next) => {
                     for w in next {
-                        let step = self.position(w) - self.position(v);
-                        let offset = self.position(w) - origin;
-                        let outside = offset.dot(&outward).max(0.0);
-                        let off = offset.dot(&across).hypot(outside) / self.cell(w);
-                        let total = cost + step.norm() * (1.0 + off * off)
-                            - ADVANCE * step.dot(&self.downstream);
+                        let total = cost + self.price(v, w, origin, outward, across);
                         let is_better = match known.get(&w) {
                             None => true,
                             Some(&(least, _)) => total < least,
                         };
                         if is_better {
                             known.insert(w, (total, v));
-                            open.insert((Ordered(offset.dot(&self.downstream)), w));
+                            open.push(Reverse((Ordered(total), w)));
                         }
                     }
                 }
             }
         }
         end.map(|(_, v)| trace_back(&known, junction, v))
+    }
+
+    /// What the edge from `v` to `w` costs.
+    fn price(&self, v: u32, w: u32, origin: Vec3, outward: Vec3, across: Vec3) -> f64 {
+        let step = self.position(w) - self.position(v);
+        let offset = self.position(w) - origin;
+        let outside = offset.dot(&outward).max(0.0);
+        let off = offset.dot(&across).hypot(outside) / self.cell(w);
+        let inward = (-self.normal(w).dot(&outward)).max(0.0);
+        let runs_down = step.dot(&self.stream) > FOLLOW_COSINE * step.norm();
+        let factor = if runs_down { 1.0 } else { ACROSS_PRICE };
+        factor * step.norm() * (1.0 + off * off + FAR_SIDE * inward * inward)
     }
 
     fn position(&self, vertex: u32) -> Vec3 {
@@ -92,24 +115,34 @@ impl Downstream<'_> {
             return Steps::End;
         }
         let here = self.position(v);
-        let next: Vec<u32> = self
-            .adjacency
-            .neighbours(v)
-            .into_iter()
-            .filter(|&w| {
-                let step = self.position(w) - here;
-                step.dot(&self.downstream) > FOLLOW_COSINE * step.norm()
-            })
-            .collect();
-        if next.is_empty() {
+        let cosine = |w: u32| {
+            let step = self.position(w) - here;
+            step.dot(&self.stream) / step.norm()
+        };
+        let neighbours = self.adjacency.neighbours(v);
+        let mut on = neighbours.iter().filter(|&&w| cosine(w) > FOLLOW_COSINE);
+        if on.clone().next().is_none() {
             return Steps::End;
         }
-        let free: Vec<u32> = next.into_iter().filter(|w| !self.own.contains(w)).collect();
-        if free.is_empty() {
-            Steps::DeadEnd
-        } else {
-            Steps::On(free)
+        if on.all(|w| self.own.contains(w)) {
+            return Steps::DeadEnd;
         }
+        let is_open = |w: &u32| cosine(*w) > ACROSS_COSINE && !self.own.contains(w);
+        Steps::On(neighbours.into_iter().filter(is_open).collect())
+    }
+
+    /// Mean normal of the triangles at a vertex, by area.
+    fn normal(&self, v: u32) -> Vec3 {
+        let sum: Vec3 = self
+            .adjacency
+            .triangles_of(v)
+            .iter()
+            .map(|&t| {
+                let [a, b, c] = self.adjacency.corners(t).map(|w| self.position(w));
+                (b - a).cross(&(c - a))
+            })
+            .sum();
+        sum.try_normalize(0.0).unwrap_or_default()
     }
 
     /// Mean length of the edges at a vertex.

@@ -17,6 +17,7 @@ use crate::carry::{CarriedCorner, Carrier, Join};
 use crate::error::BemError;
 use crate::image::on_plane;
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
 /// Two values of one vertex: κ = φ(upper) − φ(lower).
@@ -90,13 +91,14 @@ impl CutSurface {
             for (i, &vertex) in chain.vertices.iter().enumerate() {
                 let edge = if i < chain.upper.len() { i } else { i - 1 };
                 let [upper, lower] = [chain.upper[edge], chain.lower[edge]];
-                if !sectors.contains_key(&vertex) {
-                    let own = surface.divide(vertex, lower, adjacency, &cuts, half)?;
-                    sectors.insert(vertex, own);
-                }
+                let own = match sectors.entry(vertex) {
+                    Entry::Occupied(known) => known.into_mut(),
+                    Entry::Vacant(new) => {
+                        new.insert(surface.divide(vertex, lower, adjacency, &cuts, half)?)
+                    }
+                };
                 jumps.push(
-                    sectors[&vertex]
-                        .as_ref()
+                    own.as_ref()
                         .map_or_else(Jump::new, |s| s.jump(upper, lower)),
                 );
             }

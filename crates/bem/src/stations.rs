@@ -69,22 +69,23 @@ pub(crate) fn stations(law: RowLaw, end: f64) -> Vec<f64> {
     all
 }
 
-/// A line's own points (ascending) and the stations behind the first that are not close to
-/// one of them; the last station always.
-pub(crate) fn with_stations(law: RowLaw, own: &[f64], stations: &[f64]) -> Vec<f64> {
+/// The stations behind a line's first own point (`own` ascending) that are not close to
+/// one of its own; the last station always.
+pub(crate) fn between(law: RowLaw, own: &[f64], stations: &[f64]) -> Vec<f64> {
     let Some((&end, inner)) = stations.split_last() else {
-        return own.to_vec();
+        return Vec::new();
     };
     let is_apart = |x: f64| {
         let gap = CLOSE * law.length(x);
         let next = own.partition_point(|o| *o < x);
         next > 0 && x - own[next - 1] > gap && own.get(next).is_none_or(|o| o - x > gap)
     };
-    let mut all = own.to_vec();
-    all.extend(inner.iter().copied().filter(|&x| is_apart(x)));
-    all.sort_by(f64::total_cmp);
-    all.push(end);
-    all
+    inner
+        .iter()
+        .copied()
+        .filter(|&x| is_apart(x))
+        .chain([end])
+        .collect()
 }
 
 #[cfg(test)]
@@ -102,11 +103,10 @@ mod tests {
         }
     }
 
-    /// Own points stay, stations too close to them go.
     #[test]
-    fn a_line_has_its_own_points_and_the_stations_between() {
+    fn stations_close_to_a_lines_own_points_are_left_out() {
         let law = RowLaw::new(0.1, 0.5);
-        let line = with_stations(law, &[0.32, 0.33, 0.5], &[0.0, 0.1, 0.3, 0.4, 0.52, 0.6]);
-        assert_eq!(line, [0.32, 0.33, 0.4, 0.5, 0.6]);
+        let line = between(law, &[0.32, 0.33, 0.5], &[0.0, 0.1, 0.3, 0.4, 0.52, 0.6]);
+        assert_eq!(line, [0.4, 0.6]);
     }
 }

@@ -236,12 +236,11 @@ impl<'a> Builder<'a> {
                 (_, true) => self.paths.of_end(c, true),
                 _ => None,
             };
-            let line = match path {
-                Some(path) => self.junction_line(path),
-                None => {
-                    let thread = self.thread(&self.surface.chain_jumps[c][i]);
-                    self.free_line(self.position(chain.vertices[i]), 0.0, thread)
-                }
+            let line = if let Some(path) = path {
+                self.junction_line(path)
+            } else {
+                let thread = self.thread(&self.surface.chain_jumps[c][i]);
+                self.free_line(self.position(chain.vertices[i]), 0.0, thread)
             };
             lines.push(line);
         }
@@ -282,9 +281,13 @@ impl<'a> Builder<'a> {
     /// The sheet's inner edge: along the body to the line's end, then straight on.
     fn junction_line(&mut self, path: usize) -> SheetLine {
         let line = &self.paths.paths[path];
+        // An edge across may lead back by the stream's incidence: it counts as level.
         let knots: Vec<f64> = line.vertices[..=line.whole]
             .iter()
-            .map(|&v| self.distance(path, self.position(v)))
+            .scan(0.0, |level: &mut f64, &v| {
+                *level = level.max(self.distance(path, self.position(v)));
+                Some(*level)
+            })
             .collect();
         let corners: Vec<Vec3> = line.vertices[..=line.whole]
             .iter()
@@ -406,14 +409,12 @@ impl<'a> Builder<'a> {
                 let thread = self.shared_thread(&origin.shares);
                 let slot = self.slot(thread, origin.xi);
                 let own = layers.entry(triangle).or_default();
-                match own.iter_mut().find(|slots| slots[corner] == NO_SLOT) {
-                    Some(slots) => slots[corner] = slot,
-                    None => {
-                        own.push([NO_SLOT; 3]);
-                        let last = own.len() - 1;
-                        own[last][corner] = slot;
-                    }
+                let free = own.iter().position(|slots| slots[corner] == NO_SLOT);
+                let layer = free.unwrap_or(own.len());
+                if layer == own.len() {
+                    own.push([NO_SLOT; 3]);
                 }
+                own[layer][corner] = slot;
             }
         }
         layers

@@ -14,15 +14,10 @@ impl Soup {
         self.triangles.push(triangle);
     }
 
-    /// Cut so that port mirrors starboard.
+    /// Cut from the first corner to the third.
     pub(super) fn quadrilateral(&mut self, [a, b, c, d]: [Vec3; 4]) {
-        if a.y + b.y + c.y + d.y > 0.0 {
-            self.add([a, b, c]);
-            self.add([a, c, d]);
-        } else {
-            self.add([a, b, d]);
-            self.add([b, c, d]);
-        }
+        self.add([a, b, c]);
+        self.add([a, c, d]);
     }
 
     /// Corners in one place made one, triangles without area left out.

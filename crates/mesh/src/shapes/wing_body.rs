@@ -227,7 +227,13 @@ impl WingBody {
             if i % (self.n_around + 1) == 0 && (fore[i].root || aft[i].root) {
                 continue;
             }
-            soup.quadrilateral([fore[i].at, fore[next].at, aft[next].at, aft[i].at]);
+            let [a, b, c, d] = [fore[i].at, fore[next].at, aft[next].at, aft[i].at];
+            // Port mirrors starboard.
+            if a.y + b.y + c.y + d.y > 0.0 {
+                soup.quadrilateral([a, b, c, d]);
+            } else {
+                soup.quadrilateral([b, c, d, a]);
+            }
         }
     }
 
