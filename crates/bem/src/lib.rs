@@ -13,7 +13,7 @@
 //! |---|---|
 //! | `panels` | influence of flat triangles |
 //! | `adjacency`, `body_path`, `cut` | surface cut open along trailing edges and body lines |
-//! | `stations`, `wake`, `wake_builder` | the sheet and what jump it carries |
+//! | `stations`, `wake`, `wake_builder`, `wake_sheet` | the sheet and what jump it carries |
 //! | `contour`, `far_wake` | its semi-infinite part on a path in the complex plane |
 //! | `galerkin`, `near_field`, `dense` | the equations and their factorisation |
 //! | `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
@@ -43,9 +43,11 @@ mod transfer;
 mod wake;
 mod wake_builder;
 mod wake_influence;
+mod wake_sheet;
 
 pub use error::{BemError, LaplaceError};
 pub use progress::{Progress, Silent};
 pub use solve::{Flow, Plan, Problem, Sizes, Solution, WakeDirection, plan, solve};
 pub use steady::{Loads, OnsetForm, SpanwiseJump, SteadyState};
 pub use transfer::TransferModel;
+pub use wake_sheet::{JunctionLine, WakeSheet};

@@ -11,6 +11,7 @@ use crate::steady::{SteadyReport, SteadyState, UnitOnsets};
 use crate::transfer::{Block, FarBlocks, NearBlocks, TransferModel};
 use crate::wake::{Wake, cut_and_wake};
 use crate::wake_influence::{WakeBlocks, WakeInfluence};
+use crate::wake_sheet::WakeSheet;
 use faer::{Mat, MatRef, c64};
 use fladder_mesh::{SurfaceMode, TrailingEdge, TriMesh, Vec3};
 use serde::{Deserialize, Serialize};
@@ -106,6 +107,8 @@ pub struct Plan {
     /// Floating-point work in units of one panel evaluation and one multiply-add, made
     /// into seconds on `cores` cores by measured rates.
     pub core_seconds: f64,
+    /// The wake's near part, to be looked at.
+    pub wake: WakeSheet,
     /// Things the user should know.
     pub notes: Vec<String>,
 }
@@ -144,6 +147,7 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
             + far * SECONDS_PER_FAR_NODE
             + flops / FLOPS_PER_SECOND,
         sizes,
+        wake: wake.sheet,
         notes: wake.notes,
     })
 }

@@ -12,6 +12,7 @@ use crate::error::BemError;
 use crate::far_wake::FarWake;
 use crate::panels::PanelSet;
 use crate::wake_builder::Builder;
+use crate::wake_sheet::WakeSheet;
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
 
 /// Marks a corner whose jump is zero.
@@ -61,6 +62,8 @@ pub(crate) struct Wake {
     /// Warnings for the user.
     pub(crate) notes: Vec<String>,
     pub(crate) stations: usize,
+    /// The near part as it is seen.
+    pub(crate) sheet: WakeSheet,
 }
 
 impl Wake {

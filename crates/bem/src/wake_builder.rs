@@ -11,6 +11,7 @@ use crate::far_wake::FarWake;
 use crate::panels::PanelSet;
 use crate::stations::{RowLaw, stations};
 use crate::wake::{JumpSheet, NO_SLOT, Slot, Wake};
+use crate::wake_sheet::{JunctionLine, WakeSheet};
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
 use std::collections::HashMap;
 
@@ -41,6 +42,8 @@ pub(crate) struct Builder<'a> {
     sheet_vertices: Vec<Vec3>,
     sheet_triangles: Vec<[u32; 3]>,
     sheet_slots: Vec<u32>,
+    sheet_edges: Vec<u32>,
+    sheet_rows: Vec<u32>,
     body_corners: HashMap<u32, [u32; 3]>,
     notes: Vec<String>,
 }
@@ -74,6 +77,8 @@ impl<'a> Builder<'a> {
             sheet_vertices: Vec::new(),
             sheet_triangles: Vec::new(),
             sheet_slots: Vec::new(),
+            sheet_edges: Vec::new(),
+            sheet_rows: Vec::new(),
             body_corners: HashMap::new(),
             notes: Vec::new(),
         };
@@ -163,9 +168,10 @@ impl<'a> Builder<'a> {
             }
             bridge_index.push((from..lines.len()).collect());
         }
-        for ids in &bridge_index {
+        for (cut, ids) in bridge_index.iter().enumerate() {
+            let edge = self.edge_of_cut(cut);
             for pair in ids.windows(2) {
-                self.strip(&lines[pair[0]], &lines[pair[1]]);
+                self.strip(&lines[pair[0]], &lines[pair[1]], edge);
             }
         }
         for (c, threads) in chain_threads.iter().enumerate() {
@@ -175,6 +181,13 @@ impl<'a> Builder<'a> {
             self.body_jump(cut, &chain_threads, threads);
         }
         self.finish()
+    }
+
+    /// The trailing edge to which the strips of a bridge are counted.
+    fn edge_of_cut(&self, cut: usize) -> usize {
+        let cut = &self.paths.cuts[cut];
+        let path = cut.before.or(cut.after).expect("a cut has a line");
+        self.paths.paths[path].end.chain
     }
 
     fn chain_threads(&mut self) -> Vec<Vec<usize>> {
@@ -287,7 +300,7 @@ impl<'a> Builder<'a> {
         }
         for i in 0..chain.upper.len() {
             let (a, b) = (&lines[i], &lines[(i + 1) % n]);
-            self.strip(a, b);
+            self.strip(a, b, c);
         }
     }
 
@@ -396,7 +409,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Triangles between two lines, and their far strip.
-    fn strip(&mut self, a: &SheetLine, b: &SheetLine) {
+    fn strip(&mut self, a: &SheetLine, b: &SheetLine, edge: usize) {
         let from = a.first_station.max(b.first_station);
         for r in from..self.stations.len().saturating_sub(1) {
             let ids = [(a, r), (a, r + 1), (b, r + 1), (b, r)]
@@ -408,6 +421,8 @@ impl<'a> Builder<'a> {
             } else {
                 self.sheet_triangles.extend([[i, j, l], [j, k, l]]);
             }
+            self.sheet_edges.extend([edge as u32; 2]);
+            self.sheet_rows.extend([r as u32; 2]);
         }
         self.far.strips.push([a.far, b.far]);
     }
@@ -454,7 +469,30 @@ impl<'a> Builder<'a> {
         }
     }
 
+    /// What there is to be seen of the wake.
+    fn visible(&self) -> WakeSheet {
+        let lines = self.paths.paths.iter().map(|path| JunctionLine {
+            edge: path.end.chain as u32,
+            vertices: path.vertices.clone(),
+        });
+        let longest_row = self
+            .stations
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .fold(0.0, f64::max);
+        WakeSheet {
+            vertices: self.sheet_vertices.iter().map(|&p| p.into()).collect(),
+            triangles: self.sheet_triangles.clone(),
+            edge: self.sheet_edges.clone(),
+            row: self.sheet_rows.clone(),
+            junction_lines: lines.collect(),
+            direction: self.direction.into(),
+            longest_row,
+        }
+    }
+
     fn finish(self) -> Wake {
+        let sheet = self.visible();
         let start = self.stations.last().copied().unwrap_or(0.0);
         let reach = self.reach();
         let mut body: Vec<(u32, [u32; 3])> = self.body_corners.into_iter().collect();
@@ -487,6 +525,7 @@ impl<'a> Builder<'a> {
             paths: Paths::new(start, self.margin, reach),
             notes: self.notes,
             stations: self.stations.len(),
+            sheet,
         }
     }
 
@@ -500,5 +539,48 @@ impl<'a> Builder<'a> {
             .map(flat)
             .flat_map(|v| anchors.iter().map(move |a| (v - a).norm()))
             .fold(self.margin, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Flow, Problem, WakeDirection, plan};
+    use fladder_mesh::shapes::NacaWing;
+    use fladder_mesh::{Topology, Vec3, trailing_edge};
+
+    /// The sheet of a straight wing lies behind it, row by row, its upper side up.
+    #[test]
+    fn the_visible_wake_of_a_wing() {
+        let mesh = NacaWing::default().structured().expect("wing");
+        let edges = trailing_edge::find_by_shape(
+            &mesh,
+            &Topology::new(&mesh),
+            trailing_edge::Settings::default(),
+        );
+        let problem = Problem {
+            mesh: &mesh,
+            trailing_edges: &edges,
+            modes: &[],
+            flow: Flow::default(),
+            wake_direction: WakeDirection::X,
+            body_lines: &[],
+            semichord: 0.5,
+            moment_point: Vec3::zeros(),
+        };
+        let wake = plan(&problem).expect("a wake").wake;
+        let rows = wake.row.iter().max().map_or(0, |r| r + 1);
+        assert_eq!(wake.triangles.len(), 2 * 24 * rows as usize);
+        assert_eq!(wake.edge.len(), wake.triangles.len());
+        assert!(wake.edge.iter().all(|&e| e == 0));
+        for t in &wake.triangles {
+            let [a, b, c] = t.map(|v| Vec3::from(wake.vertices[v as usize]));
+            assert!((b - a).cross(&(c - a)).z > 0.0);
+            for p in [a, b, c] {
+                assert!(p.x >= 1.0 - 1e-12 && p.x <= 1.3 + 1e-12 && p.z.abs() < 1e-12);
+            }
+        }
+        // Rows are at most 0.2 b long.
+        let phase = wake.phase_per_row(1.0, 0.5);
+        assert!(phase > 0.05 && phase <= 0.2 + 1e-9, "{phase}");
     }
 }
