@@ -17,6 +17,7 @@
 //! | `contour`, `far_wake` | its semi-infinite part on a path in the complex plane |
 //! | `galerkin`, `near_field`, `dense` | the equations and their factorisation |
 //! | `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
+//! | `trefftz` | induced drag from the wake far downstream |
 //! | `wake_influence`, `transfer`, `solve` | the reduced model |
 //!
 //! Nothing here knows about files, clocks or terminals.
@@ -40,6 +41,7 @@ mod solve;
 mod stations;
 mod steady;
 mod transfer;
+mod trefftz;
 mod wake;
 mod wake_builder;
 mod wake_influence;

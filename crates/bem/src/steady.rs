@@ -6,6 +6,7 @@
 
 use crate::cut::CutSurface;
 use crate::galerkin::Galerkin;
+use crate::trefftz::induced_drag;
 use crate::wake::Wake;
 use faer::Mat;
 use fladder_mesh::Vec3;
@@ -114,6 +115,9 @@ pub struct SteadyState {
     /// and Joukowski), m²: beside the pressure's it shows how well the mesh resolves
     /// the flow.
     pub lift_by_wake_jump: f64,
+    /// Induced drag per q∞ from the energy the wake leaves far downstream, m²; none where
+    /// the sheet has a free edge with a jump.
+    pub induced_drag: Option<f64>,
     /// Lift per q∞ from the pressure, perpendicular to the stream, m².
     pub lift_by_pressure: f64,
     /// Lowest pressure coefficient and the triangle it is on.
@@ -173,6 +177,7 @@ impl SteadyReport<'_> {
         let mut state = SteadyState {
             stream: self.stream.into(),
             lift_by_wake_jump: self.wake_lift(),
+            induced_drag: induced_drag(&self.wake.far, |line| self.far_jump(line)),
             wake_jumps,
             loads: Loads {
                 force: [0.0; 3],
@@ -244,18 +249,21 @@ impl SteadyReport<'_> {
     fn wake_lift(&self) -> f64 {
         let lift = self.lift_direction();
         let far = &self.wake.far;
-        let jump = |line: u32| -> f64 {
-            self.wake.threads[self.wake.far_threads[line as usize]]
-                .iter()
-                .map(|&(column, weight)| weight * self.column_jump(column))
-                .sum()
-        };
+        let jump = |line: u32| self.far_jump(line);
         far.strips
             .iter()
             .map(|&[a, b]| {
                 let step = far.anchors[b as usize] - far.anchors[a as usize];
                 (jump(a) + jump(b)) * self.stream.cross(&step).dot(&lift)
             })
+            .sum()
+    }
+
+    /// κ₀ of a streamline of the far sheet.
+    fn far_jump(&self, line: u32) -> f64 {
+        self.wake.threads[self.wake.far_threads[line as usize]]
+            .iter()
+            .map(|&(column, weight)| weight * self.column_jump(column))
             .sum()
     }
 
