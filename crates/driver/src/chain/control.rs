@@ -73,7 +73,7 @@ mod tests {
         let error = restrict(&mut flap, &mesh, &["flaps".to_owned()]).unwrap_err();
         assert_eq!(
             error,
-            "the mesh has no surface group `flaps`; it has [\"flap\"]"
+            "the mesh has no surface group `flaps`; it has [\"body\", \"flap\"]"
         );
     }
 }

@@ -81,6 +81,7 @@ fn steady_pairs(found: &Derivatives) -> Vec<(String, f64)> {
         let moved = ["Cl", "Cn"].contains(name);
         pairs.push((format!("{name}{}", if moved { "'" } else { "" }), value));
     }
+    pairs.push(("CLff".to_owned(), found.lift_by_wake));
     pairs.push(("CDi".to_owned(), found.induced_drag.unwrap_or(f64::NAN)));
     for (name, value) in BODY_ROWS.iter().zip(found.steady_body) {
         if !["CY", "Cm"].contains(name) {
@@ -152,7 +153,8 @@ fn steady(console: &Console, scales: Scales, found: &Derivatives) {
         || "CDi undefined: the wake has a free edge with a jump".to_owned(),
         |induced| {
             let ratio = scales.span.powi(2) / scales.area;
-            let efficiency = lift * lift / (PI * ratio * induced);
+            // Of the same wake as the drag.
+            let efficiency = found.lift_by_wake.powi(2) / (PI * ratio * induced);
             let word = if induced > 0.0 && efficiency.is_finite() {
                 format!(", span efficiency {}", fixed(efficiency, 4))
             } else {
@@ -162,8 +164,9 @@ fn steady(console: &Console, scales: Scales, found: &Derivatives) {
         },
     );
     console.say(format!(
-        "  stability axes: CL {}, CY {}, CD {} by pressure, {induced}; Cl' {}, Cm {}, Cn' {}",
+        "  stability axes: CL {} by pressure, {} by wake jump; CY {}, CD {} by pressure, {induced}; Cl' {}, Cm {}, Cn' {}",
         show(lift),
+        show(found.lift_by_wake),
         show(side),
         show(drag),
         show(roll),
