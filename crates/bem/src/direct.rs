@@ -330,6 +330,8 @@ fn half_models_have_the_forces_of_the_whole() {
             assert!((a.loads.moment[axis] - b.loads.moment[axis]).abs() < 1e-9);
         }
         assert!((a.lift_by_wake_jump - b.lift_by_wake_jump).abs() < 1e-9);
+        let drag = [a, b].map(|s| s.induced_drag.expect("a closed sheet"));
+        assert!(drag[1] > 0.0 && (drag[0] - drag[1]).abs() < 1e-9);
         for (x, y) in a.generalised_forces.iter().zip(&b.generalised_forces) {
             assert!((x - y).abs() < 1e-9, "{x} {y}");
         }

@@ -23,6 +23,7 @@
 //! | `onset`, `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
 //! | `shape_change` | elastic columns with the influences of the deformed surface |
 //! | `prepare`, `surface_flow` | factorised body and steady flow; pressures for pictures |
+//! | `trefftz` | induced drag from the wake far downstream |
 //! | `wake_influence`, `reduce`, `blocks`, `transfer`, `solve` | the reduced model |
 //!
 //! Nothing here knows about files, clocks or terminals.
@@ -59,6 +60,7 @@ mod steady;
 mod strike;
 mod surface_flow;
 mod transfer;
+mod trefftz;
 mod wake;
 mod wake_builder;
 mod wake_influence;

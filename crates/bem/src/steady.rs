@@ -7,7 +7,9 @@
 use crate::boundary::ModeFields;
 use crate::cut::CutSurface;
 use crate::galerkin::Galerkin;
+use crate::image::{mirrored, on_plane};
 use crate::solve::Symmetry;
+use crate::trefftz::induced_drag;
 use crate::wake::Wake;
 use faer::Mat;
 use fladder_mesh::Vec3;
@@ -123,6 +125,9 @@ pub struct SteadyState {
     /// and Joukowski), m²: beside the pressure's it shows how well the mesh resolves
     /// the flow.
     pub lift_by_wake_jump: f64,
+    /// Induced drag per q∞ from the energy the wake leaves far downstream, m²; none where
+    /// the sheet has a free edge with a jump.
+    pub induced_drag: Option<f64>,
     /// Lift per q∞ from the pressure, perpendicular to the stream, m².
     pub lift_by_pressure: f64,
     /// Lowest pressure coefficient and the triangle it is on.
@@ -190,6 +195,7 @@ impl SteadyReport<'_> {
         let mut state = SteadyState {
             stream: self.stream.into(),
             lift_by_wake_jump: self.wake_lift(),
+            induced_drag: self.induced_drag(),
             wake_jumps,
             loads: Loads {
                 force: [0.0; 3],
@@ -298,12 +304,7 @@ impl SteadyReport<'_> {
     fn wake_lift(&self) -> f64 {
         let lift = self.lift_direction();
         let far = &self.wake.far;
-        let jump = |line: u32| -> f64 {
-            self.wake.threads[self.wake.far_threads[line as usize]]
-                .iter()
-                .map(|&(column, weight)| weight * self.column_jump(column))
-                .sum()
-        };
+        let jump = |line: u32| self.far_jump(line);
         let sum: f64 = far
             .strips
             .iter()
@@ -317,6 +318,39 @@ impl SteadyReport<'_> {
         } else {
             2.0 * sum
         }
+    }
+
+    /// Of the whole far sheet; a half model's image goes on from the lines on the plane.
+    fn induced_drag(&self) -> Option<f64> {
+        let mut far = self.wake.far.clone();
+        let mut source: Vec<u32> = (0..far.anchors.len() as u32).collect();
+        if self.symmetry != Symmetry::None {
+            let image: Vec<u32> = source
+                .clone()
+                .into_iter()
+                .map(|line| {
+                    let anchor = far.anchors[line as usize];
+                    if on_plane(&anchor) {
+                        return line;
+                    }
+                    far.anchors.push(mirrored(&anchor));
+                    source.push(line);
+                    source.len() as u32 - 1
+                })
+                .collect();
+            for [a, b] in self.wake.far.strips.iter().copied() {
+                far.strips.push([image[b as usize], image[a as usize]]);
+            }
+        }
+        induced_drag(&far, |line| self.far_jump(source[line as usize]))
+    }
+
+    /// κ₀ of a streamline of the far sheet.
+    fn far_jump(&self, line: u32) -> f64 {
+        self.wake.threads[self.wake.far_threads[line as usize]]
+            .iter()
+            .map(|&(column, weight)| weight * self.column_jump(column))
+            .sum()
     }
 
     fn column_jump(&self, column: usize) -> f64 {

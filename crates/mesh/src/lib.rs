@@ -6,6 +6,7 @@ pub mod shapes;
 mod surface;
 mod topology;
 pub mod trailing_edge;
+pub mod vtu;
 pub mod weld;
 pub mod write;
 

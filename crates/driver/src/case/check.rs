@@ -316,6 +316,18 @@ fn analytic(mode: &AnalyticMode, earlier: &[AnalyticMode], key: &str, at: &At<'_
             "give one of translation, rotation, polynomial",
         ));
     }
+    if mode
+        .group
+        .as_ref()
+        .is_some_and(|groups| groups.as_slice().is_empty())
+    {
+        return Err(at.refuse(
+            &format!("{key}.group"),
+            format!("`group` of `{name}` is an empty list"),
+            "the mode would move nothing",
+            "name a surface group of the mesh, or leave the key out",
+        ));
+    }
     if let Some(translation) = &mode.translation {
         at.all_finite(&format!("{key}.translation"), translation)?;
     }

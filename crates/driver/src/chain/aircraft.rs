@@ -1,11 +1,15 @@
 //! Everything the aerodynamics need: the surface and all modes on it.
 
+use super::control;
+use super::derivatives::Scales;
 use super::structure::StructureData;
 use super::surface::{Surface, Wanted};
 use crate::case::{self, CaseFile, Term};
 use crate::failure::Failure;
 use fladder_mesh::{SurfaceMode, Vec3};
-use fladder_modal::{self as modal, Component, Motion, PolynomialTerm, TransferReport};
+use fladder_modal::{
+    self as modal, Component, Motion, PolynomialTerm, RigidBody, TransferReport,
+};
 
 /// Surface, structure, and the modes in order: rigid, elastic, analytic.
 #[derive(Clone, Debug)]
@@ -15,6 +19,9 @@ pub(crate) struct Aircraft {
     pub(crate) modes: Vec<SurfaceMode>,
     /// Modes in whose columns the steady pressure turns with the surface: the elastic ones.
     pub(crate) turning: Vec<bool>,
+    /// How many of them the case asks for; behind them stand six unit rigid
+    /// modes where derivatives are wanted and there is no rigid body.
+    pub(crate) asked: usize,
     /// How the elastic modes came to the surface.
     pub(crate) transfer: Option<TransferReport>,
 }
@@ -62,7 +69,7 @@ impl Aircraft {
         let elastic = rigid..modes.len();
         for (number, mode) in file.case.modes.analytic.iter().enumerate() {
             let place = format!("modes.analytic.{number}");
-            let shape = analytic(mode).on(vertices).map_err(|error| {
+            let mut shape = analytic(mode).on(vertices).map_err(|error| {
                 Failure::input(
                     error.to_string(),
                     file.places.of(&place),
@@ -70,6 +77,18 @@ impl Aircraft {
                     "correct the shape of the mode",
                 )
             })?;
+            if let Some(groups) = &mode.group {
+                control::restrict(&mut shape, &surface.mesh, groups.as_slice()).map_err(
+                    |what| {
+                        Failure::input(
+                            what,
+                            file.places.of(&format!("{place}.group")),
+                            "the mode would move another part of the surface, or none",
+                            "`fladder check` lists the groups of the mesh",
+                        )
+                    },
+                )?;
+            }
             modes.push(shape);
         }
         if modes.is_empty() {
@@ -83,18 +102,30 @@ impl Aircraft {
         let turning = (0..modes.len())
             .map(|mode| turns && elastic.contains(&mode))
             .collect();
+        let asked = modes.len();
+        if structure.body.is_none() && Scales::of(&file.case.reference).is_some() {
+            let about = Vec3::from(file.case.reference.moment_point);
+            modes.extend(modal::rigid_modes(&RigidBody::unit(about), vertices));
+        }
         Ok(Self {
             surface,
             structure,
             modes,
             turning,
+            asked,
             transfer: report,
         })
     }
 
-    /// Names of the modes, in order.
+    /// The modes the case asks for, in order.
+    pub(crate) fn asked_modes(&self) -> &[SurfaceMode] {
+        &self.modes[..self.asked]
+    }
+
+    /// Names of the modes the case asks for, in order.
     pub(crate) fn mode_names(&self) -> Vec<String> {
-        self.modes.iter().map(|mode| mode.name.clone()).collect()
+        let modes = self.asked_modes().iter();
+        modes.map(|mode| mode.name.clone()).collect()
     }
 
     /// Number of modes that take part in sweeps: analytic modes do so only
@@ -110,7 +141,7 @@ impl Aircraft {
         } else {
             file.case.modes.analytic.len()
         };
-        self.modes.len() - analytic
+        self.asked - analytic
     }
 }
 
