@@ -65,6 +65,7 @@ fn solution(n_chord: usize) -> Solution {
         body_lines: &[],
         semichord: 0.5,
         moment_point: Vec3::zeros(),
+        symmetry: fladder_bem::Symmetry::None,
     };
     solve(&problem, &Silent).expect("solved")
 }

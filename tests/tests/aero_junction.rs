@@ -29,6 +29,7 @@ fn at_three_degrees(mesh: &TriMesh, body_lines: &[[u32; 2]]) -> Solution {
         body_lines,
         semichord: 0.115,
         moment_point: Vec3::zeros(),
+        symmetry: fladder_bem::Symmetry::None,
     };
     solve(&problem, &Silent).expect("a sound aircraft")
 }

@@ -124,6 +124,7 @@ fn problem(
         body_lines: &[],
         semichord: 0.5,
         moment_point: Vec3::zeros(),
+        symmetry: crate::Symmetry::None,
     }
 }
 

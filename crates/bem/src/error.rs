@@ -4,6 +4,9 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BemError {
+    /// Half models are not computed here yet.
+    #[error("half models are not computed yet")]
+    HalfModel,
     /// A mode has another number of displacements than the mesh has vertices.
     #[error("mode `{mode}` has {found} displacements for {expected} mesh vertices")]
     ModeLength {

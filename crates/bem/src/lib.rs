@@ -46,6 +46,6 @@ mod wake_influence;
 
 pub use error::{BemError, LaplaceError};
 pub use progress::{Progress, Silent};
-pub use solve::{Flow, Plan, Problem, Sizes, Solution, WakeDirection, plan, solve};
+pub use solve::{Flow, Plan, Problem, Sizes, Solution, Symmetry, WakeDirection, plan, solve};
 pub use steady::{Loads, OnsetForm, SpanwiseJump, SteadyState};
 pub use transfer::TransferModel;

@@ -12,6 +12,7 @@ use crate::transfer::{Block, FarBlocks, NearBlocks, TransferModel};
 use crate::wake::{Wake, cut_and_wake};
 use crate::wake_influence::{WakeBlocks, WakeInfluence};
 use faer::{Mat, MatRef, c64};
+pub use fladder_mesh::Symmetry;
 use fladder_mesh::{SurfaceMode, TrailingEdge, TriMesh, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -64,6 +65,8 @@ pub struct Problem<'a> {
     pub semichord: f64,
     /// Point about which steady moments are taken, m.
     pub moment_point: Vec3,
+    /// Whether the mesh is the half on y ≥ 0, and of which motion.
+    pub symmetry: Symmetry,
 }
 
 /// Sizes of a problem.
@@ -154,6 +157,9 @@ fn rayon_threads() -> f64 {
 
 /// The cut surface and the wake of a problem.
 pub(crate) fn lay_out(problem: &Problem<'_>) -> Result<(CutSurface, Wake), BemError> {
+    if problem.symmetry.is_half() {
+        return Err(BemError::HalfModel);
+    }
     cut_and_wake(
         problem.mesh,
         problem.trailing_edges,

@@ -72,6 +72,7 @@ pub(crate) fn solved(
         body_lines: &[],
         semichord,
         moment_point: Vec3::zeros(),
+        symmetry: fladder_bem::Symmetry::None,
     };
     solve(&problem, &Silent).expect("a sound problem")
 }

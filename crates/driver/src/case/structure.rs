@@ -26,6 +26,9 @@ pub struct Structure {
     /// Whether the file is a half model.
     #[serde(default)]
     pub half: bool,
+    /// What becomes of modes of the other symmetry than that of a half mesh.
+    #[serde(default)]
+    pub other_symmetry: OtherSymmetry,
     /// First and last elastic mode, from 1.
     pub modes: Option<[usize; 2]>,
     /// Structural damping coefficient, one or one per elastic mode.
@@ -57,6 +60,17 @@ pub enum Units {
     /// Foot, slug, second.
     #[serde(rename = "ft-slug-s")]
     FootSlug,
+}
+
+/// What becomes of elastic modes that a half mesh cannot carry.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OtherSymmetry {
+    /// They are refused by name.
+    #[default]
+    Refuse,
+    /// They are left out.
+    LeaveOut,
 }
 
 /// How structural damping enters.

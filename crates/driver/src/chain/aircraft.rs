@@ -4,7 +4,7 @@ use super::structure::StructureData;
 use super::surface::{Surface, Wanted};
 use crate::case::{self, CaseFile, Term};
 use crate::failure::Failure;
-use fladder_mesh::{SurfaceMode, Vec3};
+use fladder_mesh::{SurfaceMode, Symmetry, Vec3};
 use fladder_modal::{self as modal, Component, Motion, PolynomialTerm, TransferReport};
 
 /// Surface, structure, and the modes in order: rigid, elastic, analytic.
@@ -35,8 +35,14 @@ impl Aircraft {
         let structure = StructureData::read(file)?;
         let vertices = &surface.mesh.vertices;
         let mut modes: Vec<SurfaceMode> = Vec::new();
+        let symmetry = surface.symmetry;
         if let Some(body) = &structure.body {
-            modes.extend(modal::rigid_modes(body, vertices));
+            centred(file, body, &surface)?;
+            let rigid = modal::rigid_modes(body, vertices).into_iter();
+            let carried = rigid
+                .zip(modal::RIGID_KINDS)
+                .filter(|(_, kind)| symmetry.carries(*kind));
+            modes.extend(carried.map(|(mode, _)| mode));
         }
         let mut report = None;
         if let Some(model) = &structure.model {
@@ -53,7 +59,9 @@ impl Aircraft {
         }
         for (number, mode) in file.case.modes.analytic.iter().enumerate() {
             let place = format!("modes.analytic.{number}");
-            let shape = analytic(mode).on(vertices).map_err(|error| {
+            let mode = analytic(mode);
+            of_kind(file, &mode, symmetry, &place)?;
+            let shape = mode.on(vertices).map_err(|error| {
                 Failure::input(
                     error.to_string(),
                     file.places.of(&place),
@@ -99,6 +107,54 @@ impl Aircraft {
         };
         self.modes.len() - analytic
     }
+}
+
+/// Rigid modes of a half model turn about a point of its plane.
+fn centred(file: &CaseFile, body: &modal::RigidBody, surface: &Surface) -> Result<(), Failure> {
+    let (low, high) = surface.mesh.bounds().unwrap_or_default();
+    let limit = CENTRE_TOLERANCE * (high - low).norm();
+    if !surface.symmetry.is_half() || body.cg.y.abs() <= limit {
+        return Ok(());
+    }
+    Err(Failure::input(
+        format!(
+            "the centre of mass is at y = {} m with a half model, which may be {limit:.1e} m off \
+             the plane y = 0",
+            body.cg.y
+        ),
+        file.places.of("structure.rigid_body"),
+        "mass properties are those of the whole aircraft, symmetric about its plane",
+        "give cg with y = 0, and mass and inertia of both halves together",
+    ))
+}
+
+/// Distance of a centre of mass from the plane, relative to the size of the
+/// half, that is taken for rounding.
+const CENTRE_TOLERANCE: f64 = 1e-6;
+
+/// Refuses a mode that a half model cannot carry.
+fn of_kind(
+    file: &CaseFile,
+    mode: &modal::AnalyticMode,
+    symmetry: Symmetry,
+    place: &str,
+) -> Result<(), Failure> {
+    let kind = mode.symmetry();
+    if symmetry.carries(kind) {
+        return Ok(());
+    }
+    Err(Failure::input(
+        format!(
+            "mode `{}` is {}, the half model carries {} motion",
+            mode.name,
+            kind.word(),
+            symmetry.word()
+        ),
+        file.places.of(place),
+        "the mirror image of the half would move in another way than the mode says",
+        "remove the mode, or compute it on the half of its own symmetry or on the whole aircraft \
+         (mesh.symmetry)",
+    ))
 }
 
 fn not_transferred(file: &CaseFile, error: &modal::TransferError) -> Failure {

@@ -78,6 +78,7 @@ pub(crate) fn problem<'a>(file: &CaseFile, aircraft: &'a Aircraft) -> Problem<'a
         body_lines: &aircraft.surface.body_lines,
         semichord: case.reference.semichord,
         moment_point: Vec3::from(case.reference.moment_point),
+        symmetry: aircraft.surface.symmetry,
     }
 }
 
@@ -111,6 +112,10 @@ pub(crate) fn key(file: &CaseFile, problem: &Problem<'_>) -> Key {
         )
         .field("wake direction", direction)
         .indices("body lines", lines.into_iter());
+    // A whole model has the key it had before there were halves.
+    if problem.symmetry.is_half() {
+        builder = builder.field("symmetry", problem.symmetry.word().as_bytes());
+    }
     for chain in problem.trailing_edges {
         builder = builder
             .indices("trailing edge", chain.vertices.iter().copied())

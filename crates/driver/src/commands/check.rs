@@ -9,8 +9,8 @@ use crate::chain::surface::{Surface, Wanted, refusal};
 use crate::failure::Failure;
 use crate::report;
 use fladder_bem::{Flow, Plan, Problem};
-use fladder_mesh::Vec3;
 use fladder_mesh::judge::{Code, Fault, Severity};
+use fladder_mesh::{Symmetry, Vec3};
 use serde::Serialize;
 use std::path::Path;
 
@@ -21,6 +21,7 @@ const SCHEMA: &str = "fladder.check/1";
 struct Findings {
     schema: &'static str,
     ok: bool,
+    symmetry: Symmetry,
     vertices: usize,
     triangles: usize,
     bodies: usize,
@@ -162,6 +163,7 @@ fn bare_plan(surface: &Surface) -> Result<Plan, Failure> {
         // reckoned from half of the surface's length.
         semichord: 0.5 * (high.x - low.x),
         moment_point: Vec3::zeros(),
+        symmetry: surface.symmetry,
     };
     fladder_bem::plan(&problem).map_err(|error| {
         Failure::input(
@@ -216,6 +218,7 @@ impl Findings {
         Self {
             schema: SCHEMA,
             ok: false,
+            symmetry: surface.symmetry,
             vertices: surface.mesh.vertices.len(),
             triangles: surface.mesh.triangles.len(),
             bodies: surface.bodies,
