@@ -9,6 +9,7 @@
 use crate::model::ElasticMode;
 use crate::read::diagonal;
 use crate::result::{Element, ModalResult, NamedSet};
+use crate::rigid_fit::fit_nodes;
 use fladder_mesh::weld::weld;
 use fladder_mesh::{Symmetry, Vec3, mirrored};
 
@@ -71,21 +72,25 @@ fn are(count: usize) -> String {
 
 /// How the kinds of modes are told on one structure.
 pub(crate) struct Probe {
+    /// Nodes of shells where there are any: springs and scalar points have
+    /// degrees of freedom that are no displacements.
+    used: Vec<usize>,
     points: Points,
 }
 
 enum Points {
-    /// Nodes of a half structure in the plane.
+    /// Those of a half structure in the plane, among the used ones.
     InPlane(Vec<usize>),
-    /// Nodes of a whole structure and their images.
+    /// Those of a whole structure and their images.
     Pairs(Vec<[usize; 2]>),
 }
 
 impl Probe {
     pub(crate) fn new(result: &ModalResult, is_half: bool) -> Result<Self, HalfError> {
-        let positions = result.positions();
-        let (nodes, size) = (positions.len(), diagonal(positions.iter()));
-        let near = NODE_TOLERANCE * size;
+        let used = fit_nodes(result);
+        let positions: Vec<Vec3> = used.iter().map(|n| result.nodes[*n].position).collect();
+        let nodes = positions.len();
+        let near = NODE_TOLERANCE * diagonal(positions.iter());
         let points = if is_half {
             let port = positions.iter().filter(|p| p.y < -near).count();
             if port > 0 {
@@ -101,11 +106,12 @@ impl Probe {
             }
             Points::Pairs(pairs)
         };
-        Ok(Self { points })
+        Ok(Self { used, points })
     }
 
     /// Share of a shape that is not symmetric, and that is not antisymmetric.
-    pub(crate) fn rests(&self, shape: &[Vec3]) -> [f64; 2] {
+    fn rests(&self, shape: &[Vec3]) -> [f64; 2] {
+        let shape: Vec<Vec3> = self.used.iter().map(|n| shape[*n]).collect();
         match &self.points {
             Points::InPlane(nodes) => {
                 let largest = shape.iter().map(Vec3::norm).fold(0.0, f64::max);
@@ -176,13 +182,13 @@ fn described(mode: &ElasticMode, wanted: Symmetry, is_other: bool, rest: f64) ->
         Symmetry::Antisymmetric => Symmetry::Symmetric,
         _ => Symmetry::Antisymmetric,
     };
-    let kind = if is_other { other } else { Symmetry::None };
+    let (name, frequency) = (&mode.name, mode.frequency_hz);
+    if is_other {
+        return format!("{name} ({frequency:.3} Hz, {})", other.word());
+    }
     format!(
-        "{} ({:.3} Hz, {}, {:.1e} of it is not {})",
-        mode.name,
-        mode.frequency_hz,
-        kind.word(),
-        rest,
+        "{name} ({frequency:.3} Hz, {}: {rest:.1e} of it is not {})",
+        Symmetry::None.word(),
         wanted.word()
     )
 }

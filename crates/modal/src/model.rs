@@ -67,7 +67,8 @@ pub struct ElasticMode {
     pub frequency_hz: f64,
     /// Circular frequency, rad/s; its square is the generalised stiffness.
     pub omega: f64,
-    /// Generalised mass in the file, before normalisation, kg.
+    /// Generalised mass before normalisation, kg: that in the file, twice that
+    /// of a half model.
     pub generalised_mass: f64,
     /// Displacement a node, m per √kg m.
     pub shape: Vec<Vec3>,

@@ -246,7 +246,7 @@ pub(crate) fn survey_of(result: &ModalResult, symmetry: Symmetry) -> RigidSurvey
 }
 
 /// Nodes of shells where there are any, else of solids, else all.
-fn fit_nodes(result: &ModalResult) -> Vec<usize> {
+pub(crate) fn fit_nodes(result: &ModalResult) -> Vec<usize> {
     let of = |wanted: fn(&crate::element::ElementKind) -> bool| {
         let mut used = vec![false; result.nodes.len()];
         for element in result

@@ -113,12 +113,14 @@ pub fn transfer(
             (mode, removed)
         })
         .unzip();
-    let removed = removed.into_iter().fold(0.0, f64::max);
-    if removed > SAID_IN_PLANE {
+    let worst = (0..modes.len()).max_by(|&a, &b| removed[a].total_cmp(&removed[b]));
+    if let Some(worst) = worst.filter(|&worst| removed[worst] > SAID_IN_PLANE) {
         report.notes.push(format!(
             "in the symmetry plane the surface was kept from moving as {} motion cannot, by up to \
-             {removed:.1e} of the largest displacement of a mode",
-            model.symmetry.word()
+             {:.1e} of the largest displacement, in {}",
+            model.symmetry.word(),
+            removed[worst],
+            modes[worst].name
         ));
     }
     Ok((modes, report))
