@@ -4,7 +4,7 @@
 
 use divan::{Bencher, black_box};
 use fladder_bem::panels::PanelSet;
-use fladder_bem::{Flow, Problem, Silent, Solution, WakeDirection, solve};
+use fladder_bem::{Problem, Silent, Solution, solve};
 use fladder_mesh::shapes::NacaWing;
 use fladder_mesh::{Frame, SurfaceMode, Topology, TriMesh, Vec3, trailing_edge};
 
@@ -56,18 +56,7 @@ fn solution(n_chord: usize) -> Solution {
                 .collect(),
         })
         .collect();
-    let problem = Problem {
-        mesh: &mesh,
-        trailing_edges: &edges,
-        modes: &modes,
-        flow: Flow::default(),
-        wake_direction: WakeDirection::Freestream,
-        body_lines: &[],
-        semichord: 0.5,
-        moment_point: Vec3::zeros(),
-        symmetry: fladder_bem::Symmetry::None,
-    };
-    solve(&problem, &Silent).expect("solved")
+    solve(&Problem::new(&mesh, &edges, &modes, 0.5), &Silent).expect("solved")
 }
 
 /// From mesh and 26 modes to the transfer model.

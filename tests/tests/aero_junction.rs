@@ -3,7 +3,7 @@
 mod common;
 
 use common::{edges, mode};
-use fladder_bem::{Flow, Problem, Silent, Solution, WakeDirection, solve};
+use fladder_bem::{Flow, Problem, Silent, Solution, solve};
 use fladder_mesh::{Frame, TriMesh, Vec3, read};
 use std::path::Path;
 
@@ -17,19 +17,14 @@ fn at_three_degrees(mesh: &TriMesh, body_lines: &[[u32; 2]]) -> Solution {
         mode(mesh, "rigid:z", Frame::Body, |_| Vec3::z()),
         mode(mesh, "rigid:y", Frame::Body, |_| Vec3::y()),
     ];
+    let edges = edges(mesh);
     let problem = Problem {
-        mesh,
-        trailing_edges: &edges(mesh),
-        modes: &modes,
         flow: Flow {
             alpha: 3_f64.to_radians(),
             beta: 0.0,
         },
-        wake_direction: WakeDirection::Freestream,
         body_lines,
-        semichord: 0.115,
-        moment_point: Vec3::zeros(),
-        symmetry: fladder_bem::Symmetry::None,
+        ..Problem::new(mesh, &edges, &modes, 0.115)
     };
     solve(&problem, &Silent).expect("a sound aircraft")
 }

@@ -8,9 +8,11 @@
 //!   δn = −(∇_s u)ᵀ n = −Σ_c ∇N_c (u_c·n);
 //! * frame `body`: ∂u = 0.
 //!
-//! The source strength is ∂φ/∂n = q·n = s (u·n) + ∂u·n. U has size one here.
+//! The source strength is ∂φ/∂n = q·n = s (u·n) + ∂u·n. U has size one here; ∂u is kept
+//! for each unit onset, being linear in U.
 
 use crate::galerkin::Galerkin;
+use crate::onset::OnsetBasis;
 use faer::Mat;
 use fladder_mesh::{Frame, SurfaceMode, Vec3};
 
@@ -20,8 +22,8 @@ pub(crate) struct ModeFields {
     pub(crate) count: usize,
     /// u·n at corners: row 3 t + c, column mode.
     pub(crate) normal: Mat<f64>,
-    /// ∂u of each triangle: index mode × triangles + t.
-    pub(crate) convected: Vec<Vec3>,
+    /// ∂u of each triangle for each unit onset: index (onset × modes + mode) × triangles + t.
+    convected: Vec<Vec3>,
     /// Displacements: index mode × vertices of the mesh.
     displacement: Vec<Vec3>,
     n_mesh: usize,
@@ -29,22 +31,27 @@ pub(crate) struct ModeFields {
     n_triangles: usize,
     /// Columns of modes whose ∂u is not zero.
     pub(crate) inertial: Vec<usize>,
+    /// Columns on which the steady pressure turns with the surface.
+    pub(crate) turning: Vec<bool>,
+    /// Unit onsets.
+    pub(crate) basis: OnsetBasis,
 }
 
 impl ModeFields {
-    /// `stream` is the unit vector of U; `source` maps cut to mesh vertices.
+    /// `source` maps cut to mesh vertices; `turning` may be empty for none.
     pub(crate) fn new(
         galerkin: &Galerkin,
         source: &[u32],
         modes: &[SurfaceMode],
-        stream: Vec3,
+        turning: &[bool],
+        basis: OnsetBasis,
     ) -> Self {
         let n_triangles = galerkin.n_triangles();
         let n_mesh = modes.first().map_or(0, |m| m.displacement.len());
         let mut fields = Self {
             count: modes.len(),
             normal: Mat::zeros(3 * n_triangles, modes.len()),
-            convected: vec![Vec3::zeros(); modes.len() * n_triangles],
+            convected: vec![Vec3::zeros(); basis.len() * modes.len() * n_triangles],
             displacement: modes
                 .iter()
                 .flat_map(|m| m.displacement.iter().copied())
@@ -53,7 +60,12 @@ impl ModeFields {
             source: source.to_vec(),
             n_triangles,
             inertial: Vec::new(),
+            turning: (0..modes.len())
+                .map(|m| turning.get(m).copied().unwrap_or(false))
+                .collect(),
+            basis,
         };
+        let axes: Vec<Vec3> = fields.basis.axes().collect();
         for (m, mode) in modes.iter().enumerate() {
             if mode.frame == Frame::Inertial {
                 fields.inertial.push(m);
@@ -65,8 +77,10 @@ impl ModeFields {
                     fields.normal[(3 * t + c, m)] = u.dot(&normal);
                 }
                 if mode.frame == Frame::Inertial {
-                    fields.convected[m * n_triangles + t] =
-                        convected(&corners, &galerkin.gradients[t], normal, stream);
+                    for (a, axis) in axes.iter().enumerate() {
+                        fields.convected[(a * modes.len() + m) * n_triangles + t] =
+                            convected(&corners, &galerkin.gradients[t], normal, *axis);
+                    }
                 }
             }
         }
@@ -79,9 +93,22 @@ impl ModeFields {
             .map(|v| self.displacement[m * self.n_mesh + self.source[v as usize] as usize])
     }
 
-    /// ∂u of mode `m` on triangle `t`.
-    pub(crate) fn convected(&self, m: usize, t: usize) -> Vec3 {
-        self.convected[m * self.n_triangles + t]
+    /// ∂u of mode `m` on triangle `t` in unit onset `a`.
+    pub(crate) fn convected(&self, a: usize, m: usize, t: usize) -> Vec3 {
+        self.convected[(a * self.count + m) * self.n_triangles + t]
+    }
+
+    /// Change of the area vector n A of triangle `t` with mode `m`:
+    /// A Σ_c [n (∇N_c·u_c) − ∇N_c (u_c·n)], exact to first order.
+    pub(crate) fn turned_area(&self, galerkin: &Galerkin, m: usize, t: usize) -> Vec3 {
+        let normal = galerkin.normals[t];
+        let corners = self.corners(galerkin, m, t);
+        let sum: Vec3 = corners
+            .iter()
+            .zip(&galerkin.gradients[t])
+            .map(|(u, g)| normal * g.dot(u) - g * u.dot(&normal))
+            .sum();
+        galerkin.areas[t] * sum
     }
 
     /// Mean of u·n over a triangle.
@@ -89,23 +116,31 @@ impl ModeFields {
         (0..3).map(|c| self.normal[(3 * t + c, m)]).sum::<f64>() / 3.0
     }
 
-    /// Source strengths at corners: [u·n of all modes, ∂u·n of inertial modes,
-    /// −n·e_x, −n·e_y, −n·e_z of the steady onset].
+    /// Source strengths of the motion at corners: [u·n of all modes, then for each unit
+    /// onset ∂u·n of the inertial modes].
     pub(crate) fn sources(&self, galerkin: &Galerkin) -> Mat<f64> {
-        let m = self.count;
-        let e = self.inertial.len();
-        Mat::from_fn(3 * self.n_triangles, m + e + 3, |row, column| {
-            let t = row / 3;
-            if column < m {
-                self.normal[(row, column)]
-            } else if column < m + e {
-                self.convected(self.inertial[column - m], t)
+        let (m, e) = (self.count, self.inertial.len());
+        Mat::from_fn(
+            3 * self.n_triangles,
+            m + self.basis.len() * e,
+            |row, column| {
+                let t = row / 3;
+                if column < m {
+                    return self.normal[(row, column)];
+                }
+                let (a, k) = ((column - m) / e, (column - m) % e);
+                self.convected(a, self.inertial[k], t)
                     .dot(&galerkin.normals[t])
-            } else {
-                -galerkin.normals[t][column - m - e]
-            }
-        })
+            },
+        )
     }
+}
+
+/// Source strengths −n·e_x, −n·e_y, −n·e_z of the steady onsets at corners.
+pub(crate) fn onset_sources(galerkin: &Galerkin) -> Mat<f64> {
+    Mat::from_fn(3 * galerkin.n_triangles(), 3, |row, axis| {
+        -galerkin.normals[row / 3][axis]
+    })
 }
 
 /// (U·∇) u on one triangle.

@@ -79,6 +79,15 @@ impl Paths {
             decaying,
         }
     }
+
+    /// The path whose sector holds arg s, Im s ≥ 0.
+    pub(crate) fn of(&self, s: c64) -> &Path {
+        if s.arg().to_degrees() <= SECTOR_LIMIT_DEG {
+            &self.oscillating
+        } else {
+            &self.decaying
+        }
+    }
 }
 
 impl Path {

@@ -9,6 +9,7 @@
 use crate::adjacency::{Adjacency, undirected};
 use crate::body_path::{BodyPaths, end_vertex};
 use crate::error::BemError;
+use crate::image::on_plane;
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
 use std::collections::HashSet;
 
@@ -47,6 +48,7 @@ impl CutSurface {
         adjacency: &Adjacency<'_>,
         chains: &[TrailingEdge],
         paths: &BodyPaths,
+        half: bool,
     ) -> Result<Self, BemError> {
         let mut surface = Self {
             vertices: mesh.vertices.clone(),
@@ -59,7 +61,7 @@ impl CutSurface {
         let cuts = cut_edges(chains, paths);
         for (c, chain) in chains.iter().enumerate() {
             let columns = (0..chain.vertices.len())
-                .map(|i| surface.double(c, i, chain, adjacency, paths, &cuts))
+                .map(|i| surface.double((c, i), chain, adjacency, paths, &cuts, half))
                 .collect::<Result<_, _>>()?;
             surface.chain_columns.push(columns);
         }
@@ -69,15 +71,16 @@ impl CutSurface {
         Ok(surface)
     }
 
-    /// Doubles one vertex of a chain, unless it is a free tip.
+    /// Doubles one vertex of a chain, unless it is a free tip. On the plane of symmetry of
+    /// a half model the edge goes on.
     fn double(
         &mut self,
-        c: usize,
-        i: usize,
+        (c, i): (usize, usize),
         chain: &TrailingEdge,
         adjacency: &Adjacency<'_>,
         paths: &BodyPaths,
         cuts: &HashSet<(u32, u32)>,
+        half: bool,
     ) -> Result<Option<usize>, BemError> {
         let vertex = chain.vertices[i];
         let n = chain.vertices.len();
@@ -86,7 +89,8 @@ impl CutSurface {
             .paths
             .iter()
             .any(|p| p.end.chain == c && p.vertices[0] == vertex);
-        if is_end && !is_junction {
+        let goes_on = half && on_plane(&self.vertices[vertex as usize]);
+        if is_end && !is_junction && !goes_on {
             return Ok(None);
         }
         let groups = adjacency.fan_groups(vertex, cuts);

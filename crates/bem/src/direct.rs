@@ -1,17 +1,21 @@
 //! The whole complex system at one s, solved without reduction: oracle of the transfer
 //! model. Everything of the wake is summed at every test point before it is tested.
 
-use crate::boundary::ModeFields;
+use crate::Symmetry;
+use crate::boundary::{ModeFields, onset_sources};
 use crate::galerkin::Galerkin;
+use crate::image::Image;
 use crate::near_field::POINTS;
+use crate::onset::OnsetBasis;
 use crate::pressure::Functionals;
 use crate::progress::Silent;
 use crate::solve::{Flow, Problem, WakeDirection, lay_out, solve};
 use crate::steady::UnitOnsets;
+use crate::surface_flow::surface_flow;
 use crate::transfer::solve_complex;
 use crate::wake_influence::WakeInfluence;
 use faer::{Mat, c64};
-use fladder_mesh::shapes::NacaWing;
+use fladder_mesh::shapes::{Extent, NacaWing};
 use fladder_mesh::{Frame, SurfaceMode, Topology, TrailingEdge, TriMesh, Vec3, trailing_edge};
 
 fn complex(matrix: &Mat<f64>) -> Mat<c64> {
@@ -24,9 +28,23 @@ fn complex(matrix: &Mat<f64>) -> Mat<c64> {
 fn direct(problem: &Problem<'_>, p: c64) -> Mat<c64> {
     let (surface, wake) = lay_out(problem).expect("wake");
     let stream = problem.flow.stream();
-    let galerkin = Galerkin::new(&surface);
-    let fields = ModeFields::new(&galerkin, &surface.source, problem.modes, stream);
-    let sources = fields.sources(&galerkin);
+    let galerkin = Galerkin::new(&surface, Image::None);
+    let fields = ModeFields::new(
+        &galerkin,
+        &surface.source,
+        problem.modes,
+        problem.turning,
+        OnsetBasis::single(stream),
+    );
+    let (motion, onset) = (fields.sources(&galerkin), onset_sources(&galerkin));
+    let split = motion.ncols();
+    let sources = Mat::from_fn(motion.nrows(), split + 3, |i, j| {
+        if j < split {
+            motion[(i, j)]
+        } else {
+            onset[(i, j - split)]
+        }
+    });
     let assembly = galerkin
         .assemble(sources.as_ref(), &Silent)
         .expect("assembled");
@@ -38,7 +56,9 @@ fn direct(problem: &Problem<'_>, p: c64) -> Mat<c64> {
         free_terms: &assembly.free_terms,
     };
     let system_at = |s: c64| {
-        let tested = influence.tested_wake(s, surface.columns.len());
+        let tested = influence
+            .tested(s, surface.columns.len(), &Silent)
+            .expect("not interrupted");
         let mut system = complex(&body);
         for (j, column) in surface.columns.iter().enumerate() {
             for i in 0..n {
@@ -49,10 +69,9 @@ fn direct(problem: &Problem<'_>, p: c64) -> Mat<c64> {
         system
     };
     let m = fields.count;
-    let e = fields.inertial.len();
     let steady = solve_complex(
         system_at(c64::new(0.0, 0.0)),
-        complex(&assembly.right_hand_sides.subcols(m + e, 3).to_owned()),
+        complex(&assembly.right_hand_sides.subcols(split, 3).to_owned()),
     )
     .expect("regular");
     let steady = Mat::from_fn(n, 3, |i, j| steady[(i, j)].re);
@@ -61,7 +80,7 @@ fn direct(problem: &Problem<'_>, p: c64) -> Mat<c64> {
         steady[(column.upper as usize, a)] - steady[(column.lower as usize, a)]
     });
     let onsets = UnitOnsets::new(&galerkin, &wake, &steady, jumps);
-    let functionals = Functionals::new(&galerkin, &fields, &onsets, &wake, stream);
+    let functionals = Functionals::new(&galerkin, &fields, &onsets, &wake);
     let s = p / problem.semichord;
     let right = Mat::from_fn(n, m, |i, j| {
         let zero = fields.inertial.iter().position(|&k| k == j);
@@ -70,9 +89,9 @@ fn direct(problem: &Problem<'_>, p: c64) -> Mat<c64> {
     });
     let phi = solve_complex(system_at(s), right).expect("regular");
     Mat::from_fn(m, m, |i, j| {
-        let mut sum = s * functionals.c1[(i, j)] + functionals.c0[(i, j)];
+        let mut sum = s * functionals.c1[0][(i, j)] + functionals.c0[0][(i, j)];
         for v in 0..n {
-            sum += (functionals.p0[(v, i)] + s * functionals.p1[(v, i)]) * phi[(v, j)];
+            sum += (functionals.p0[0][(v, i)] + s * functionals.p1[(v, i)]) * phi[(v, j)];
         }
         2.0 * sum
     })
@@ -102,29 +121,36 @@ fn wing(sweep_deg: f64) -> (TriMesh, Vec<TrailingEdge>, Vec<SurfaceMode>) {
         ..NacaWing::default()
     };
     let mesh = wing.structured().expect("wing");
-    let edges = trailing_edge::find_by_shape(
-        &mesh,
-        &Topology::new(&mesh),
-        trailing_edge::Settings::default(),
-    );
+    let edges = edges(&mesh);
     let modes = modes(&mesh.vertices);
     (mesh, edges, modes)
+}
+
+fn edges(mesh: &TriMesh) -> Vec<TrailingEdge> {
+    trailing_edge::find_by_shape(
+        mesh,
+        &Topology::new(mesh),
+        trailing_edge::Settings::default(),
+    )
 }
 
 fn problem(
     (mesh, edges, modes): &(TriMesh, Vec<TrailingEdge>, Vec<SurfaceMode>),
     flow: Flow,
 ) -> Problem<'_> {
+    problem_of(mesh, edges, modes, flow)
+}
+
+fn problem_of<'a>(
+    mesh: &'a TriMesh,
+    edges: &'a [TrailingEdge],
+    modes: &'a [SurfaceMode],
+    flow: Flow,
+) -> Problem<'a> {
     Problem {
-        mesh,
-        trailing_edges: edges,
-        modes,
+        turning: &[false, false, true],
         flow,
-        wake_direction: WakeDirection::Freestream,
-        body_lines: &[],
-        semichord: 0.5,
-        moment_point: Vec3::zeros(),
-        symmetry: crate::Symmetry::None,
+        ..Problem::new(mesh, edges, modes, 0.5)
     }
 }
 
@@ -150,6 +176,162 @@ fn the_reduced_model_equals_the_complex_solve() {
         let difference = (&reduced - &full).norm_max() / full.norm_max();
         println!("p = {p}: reduced against direct {difference:.1e}");
         assert!(difference < 1e-10);
+    }
+}
+
+/// The pressures for pictures have the generalised forces of a plunge, u·n being constant
+/// on a triangle.
+#[test]
+fn pressures_on_the_surface_add_up_to_q() {
+    let wing = wing(20.0);
+    let problem = Problem {
+        turning: &[],
+        ..problem(
+            &wing,
+            Flow {
+                alpha: 0.05,
+                beta: 0.02,
+            },
+        )
+    };
+    let points = [c64::new(0.0, 0.3), c64::new(-0.1, 0.05)];
+    let transfer = solve(&problem, &Silent).expect("solved").transfer;
+    let flow = surface_flow(&problem, &points, &Silent).expect("solved");
+    let area: Vec<f64> = (0..wing.0.triangles.len())
+        .map(|t| wing.0.area_vector(t).z)
+        .collect();
+    for unsteady in &flow.unsteady {
+        let q = transfer.q(unsteady.p).expect("Q");
+        for (mode, pressure) in unsteady.pressure.iter().enumerate() {
+            let force: c64 = pressure.iter().zip(&area).map(|(c, a)| -c * a).sum();
+            let difference = (force - q[(0, mode)]).norm() / q.norm_max();
+            println!("p = {}, mode {mode}: {difference:.1e}", unsteady.p);
+            assert!(difference < 1e-11);
+        }
+    }
+    assert!(surface_flow(&problem, &[c64::new(-0.1, 0.0)], &Silent).is_err());
+}
+
+/// With the wake along x one model holds at every incidence.
+#[test]
+fn one_model_serves_every_incidence() {
+    let wing = wing(20.0);
+    let at = |alpha_deg: f64| Flow {
+        alpha: alpha_deg.to_radians(),
+        beta: 0.02,
+    };
+    let along_x = |flow| Problem {
+        wake_direction: WakeDirection::X,
+        ..problem(&wing, flow)
+    };
+    let solution = solve(&along_x(at(1.0)), &Silent).expect("solved");
+    for alpha_deg in [-2.0, 6.0] {
+        let flow = at(alpha_deg);
+        let other = solve(&along_x(flow), &Silent).expect("solved").steady;
+        let forces = solution.steady.generalised_forces_at(flow.stream().into());
+        for (here, there) in forces.iter().zip(&other.generalised_forces) {
+            assert!((here - there).abs() < 1e-12, "{here} {there}");
+        }
+        for p in [c64::new(0.0, 0.3), c64::new(-0.1, 0.3), c64::new(0.0, 0.0)] {
+            let (one, full) = (
+                solution.transfer.q_at(p, flow).expect("Q"),
+                direct(&along_x(flow), p),
+            );
+            let difference = (&one - &full).norm_max() / full.norm_max();
+            println!("α = {alpha_deg}°, p = {p}: one model against direct {difference:.1e}");
+            assert!(difference < 1e-10);
+        }
+    }
+    let following = solve(&problem(&wing, at(1.0)), &Silent).expect("solved");
+    assert!(
+        following
+            .transfer
+            .q_at(c64::new(0.0, 0.3), at(2.0))
+            .is_err()
+    );
+}
+
+/// Q of a half model is that of the whole, symmetric and antisymmetric.
+#[test]
+fn half_models_have_the_forces_of_the_whole() {
+    let shape = NacaWing {
+        n_chord: 6,
+        n_half_span: 4,
+        sweep_deg: 25.0,
+        ..NacaWing::default()
+    };
+    let half_shape = NacaWing {
+        extent: Extent::Half,
+        ..shape
+    };
+    let (whole, half) = (
+        shape.structured().expect("wing"),
+        half_shape.structured().expect("half wing"),
+    );
+    let (whole_edges, half_edges) = (edges(&whole), edges(&half));
+    let flow = Flow {
+        alpha: 0.07,
+        beta: 0.0,
+    };
+    let mode = |name: &str, frame, field: fn(&Vec3) -> Vec3, mesh: &TriMesh| SurfaceMode {
+        name: name.into(),
+        frame,
+        displacement: mesh.vertices.iter().map(field).collect(),
+    };
+    let symmetric = |mesh: &TriMesh| modes(&mesh.vertices);
+    let antisymmetric = |mesh: &TriMesh| {
+        vec![
+            mode("roll", Frame::Body, |x| Vec3::new(0.0, -x.z, x.y), mesh),
+            mode("yaw", Frame::Body, |x| Vec3::new(-x.y, x.x, 0.0), mesh),
+            mode(
+                "bending",
+                Frame::Inertial,
+                |x| Vec3::new(0.0, 0.0, x.y * x.y.abs() / 16.0),
+                mesh,
+            ),
+        ]
+    };
+    for (symmetry, whole_modes, half_modes) in [
+        (Symmetry::Symmetric, symmetric(&whole), symmetric(&half)),
+        (
+            Symmetry::Antisymmetric,
+            antisymmetric(&whole),
+            antisymmetric(&half),
+        ),
+    ] {
+        let reference = problem_of(&whole, &whole_edges, &whole_modes, flow);
+        let model = Problem {
+            symmetry,
+            ..problem_of(&half, &half_edges, &half_modes, flow)
+        };
+        let (reference, model) = (
+            solve(&reference, &Silent).expect("whole"),
+            solve(&model, &Silent).expect("half"),
+        );
+        assert!(model.sizes.unknowns < reference.sizes.unknowns / 2 + 20);
+        for p in [
+            c64::new(0.0, 0.3),
+            c64::new(-0.1, 0.3),
+            c64::new(0.1, 0.05),
+            c64::new(0.0, 0.0),
+        ] {
+            let (q, wanted) = (
+                model.transfer.q(p).expect("Q"),
+                reference.transfer.q(p).expect("Q"),
+            );
+            let difference = (&q - &wanted).norm_max() / wanted.norm_max();
+            println!("{symmetry:?}, p = {p}: half against whole {difference:.1e}");
+            assert!(difference < 1e-9, "{q:?} {wanted:?}");
+        }
+        let (a, b) = (&model.steady, &reference.steady);
+        for axis in 0..3 {
+            assert!((a.loads.force[axis] - b.loads.force[axis]).abs() < 1e-9);
+            assert!((a.loads.moment[axis] - b.loads.moment[axis]).abs() < 1e-9);
+        }
+        assert!((a.lift_by_wake_jump - b.lift_by_wake_jump).abs() < 1e-9);
+        for (x, y) in a.generalised_forces.iter().zip(&b.generalised_forces) {
+            assert!((x - y).abs() < 1e-9, "{x} {y}");
+        }
     }
 }
 

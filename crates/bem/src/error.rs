@@ -4,9 +4,6 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BemError {
-    /// Half models are not computed here yet.
-    #[error("half models are not computed yet")]
-    HalfModel,
     /// A mode has another number of displacements than the mesh has vertices.
     #[error("mode `{mode}` has {found} displacements for {expected} mesh vertices")]
     ModeLength {
@@ -24,6 +21,14 @@ pub enum BemError {
         mode: String,
         /// Mesh vertex.
         vertex: usize,
+    },
+    /// Sideslip on a half model.
+    #[error(
+        "a half model has its stream in the plane of symmetry, but β = {beta_deg}°; mesh the whole aircraft for sideslip"
+    )]
+    SideslipOnHalf {
+        /// Sideslip, °.
+        beta_deg: f64,
     },
     /// The triangles at a trailing-edge vertex do not fall into two sides.
     #[error(
@@ -91,6 +96,16 @@ pub enum BemError {
         /// Its size.
         value: f64,
     },
+    /// A point of the Laplace plane at which no pressure can be given.
+    #[error(
+        "g = {g}, k = {k} is no point with k > 0, or k = 0 and g ≥ 0; pressures are given there only"
+    )]
+    Point {
+        /// Reduced damping.
+        g: f64,
+        /// Reduced frequency.
+        k: f64,
+    },
     /// The result holds a value that is no number.
     #[error("the generalised forces of mode `{mode}` are not finite")]
     NotFinite {
@@ -132,6 +147,16 @@ pub enum LaplaceError {
         g: f64,
         /// Reduced frequency.
         k: f64,
+    },
+    /// The model was made for one incidence, its wake following the stream.
+    #[error(
+        "the forces were computed with a wake along the stream of their own incidence and do not hold at α = {alpha_deg}°, β = {beta_deg}°; set wake.direction = \"x\" (and some sideslip where it is to vary)"
+    )]
+    OtherIncidence {
+        /// Angle of attack, °.
+        alpha_deg: f64,
+        /// Sideslip, °.
+        beta_deg: f64,
     },
     /// The jump equations are singular: a pole of Q.
     #[error("the wake equations are singular at g = {g}, k = {k}")]

@@ -6,14 +6,17 @@
 //! sharp edges and inside triangles alike. The equation is taken at three interior
 //! points q of each triangle, (2/3, 1/6, 1/6) and its turns, and tested with the hat
 //! functions: Σ_t A_t/3 Σ_q Nᵢ(q) {…}, divided by the test function's weight.
+//! With a plane of symmetry D and S are those of both halves, the other half being seen as
+//! the given one from the point's image ([`crate::image`]).
 //! One point a triangle has a null space on right-angled meshes; collocation at the
 //! vertices loses lift on thin wings. Panels near a test triangle are integrated with more
 //! points ([`crate::near_field`]).
 
 use crate::cut::CutSurface;
 use crate::error::BemError;
+use crate::image::{self, Image};
 use crate::near_field::{POINTS, Spheres, TestTriangle};
-use crate::panels::PanelSet;
+use crate::panels::{CornerValues, PanelScratch, PanelSet};
 use crate::progress::Progress;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
@@ -40,6 +43,13 @@ pub(crate) struct Galerkin {
     pub(crate) weights: Vec<f64>,
     /// Where each triangle is tested.
     pub(crate) tests: Vec<TestTriangle>,
+    /// The other half of the surface, if only one is given.
+    pub(crate) image: Image,
+    /// The test points' images: what they see of the given half, the points see of the
+    /// other. Empty without image.
+    pub(crate) image_tests: Vec<TestTriangle>,
+    /// Vertices whose potential is zero by antisymmetry.
+    constrained: Vec<bool>,
     panels: PanelSet,
     spheres: Spheres,
 }
@@ -62,13 +72,14 @@ struct TaskRows {
 }
 
 impl Galerkin {
-    pub(crate) fn new(surface: &CutSurface) -> Self {
+    pub(crate) fn new(surface: &CutSurface, image: Image) -> Self {
         let n_vertices = surface.vertices.len();
         let mut weights = vec![0.0; n_vertices];
         let mut normals = Vec::new();
         let mut areas = Vec::new();
         let mut gradients = Vec::new();
         let mut tests = Vec::new();
+        let mut image_tests = Vec::new();
         for corners in &surface.triangles {
             let p = corners.map(|v| surface.vertices[v as usize]);
             let vector = (p[1] - p[0]).cross(&(p[2] - p[0]));
@@ -80,6 +91,9 @@ impl Galerkin {
                 normal.cross(&(p[(i + 2) % 3] - p[(i + 1) % 3])) / twice_area
             }));
             tests.push(TestTriangle::new(&p));
+            if image.sign().is_some() {
+                image_tests.push(TestTriangle::new(&p.map(|x| image::mirrored(&x))));
+            }
             for &v in corners {
                 weights[v as usize] += twice_area / 6.0;
             }
@@ -93,6 +107,13 @@ impl Galerkin {
             gradients,
             weights,
             tests,
+            image,
+            image_tests,
+            constrained: surface
+                .vertices
+                .iter()
+                .map(|v| image == Image::Odd && image::on_plane(v))
+                .collect(),
             spheres: Spheres::new(&panels),
             panels,
         }
@@ -102,9 +123,13 @@ impl Galerkin {
         self.triangles.len()
     }
 
-    /// Weight of test function `corner` of a triangle at test point `q`.
+    /// Weight of test function `corner` of a triangle at test point `q`; zero where the
+    /// potential is given.
     pub(crate) fn test_weight(&self, triangle: usize, q: usize, corner: usize) -> f64 {
         let vertex = self.triangles[triangle][corner] as usize;
+        if self.constrained[vertex] {
+            return 0.0;
+        }
         self.areas[triangle] / 3.0 * POINTS[q][corner] / self.weights[vertex]
     }
 
@@ -142,6 +167,9 @@ impl Galerkin {
                     .copy_from_slice(&task.free_terms);
             }
         }
+        for v in (0..n).filter(|&v| self.constrained[v]) {
+            rows[v * n + v] = 1.0;
+        }
         Ok(Assembly {
             rows,
             right_hand_sides,
@@ -157,9 +185,7 @@ impl Galerkin {
     fn evaluate(&self, first: usize, sources: MatRef<'_, f64>) -> TaskRows {
         let range = self.task_triangles(first);
         let n_points = 3 * range.len();
-        let mut scratch = self.panels.scratch();
-        let mut d: [Vec<[f64; 3]>; 3] =
-            std::array::from_fn(|_| vec![[0.0; 3]; self.n_triangles()]);
+        let mut seen = Seen::new(self);
         let mut doublets = vec![0.0; n_points * self.n_vertices];
         let mut influences = vec![[0.0; 3]; n_points * self.n_triangles()];
         let mut free_terms = Vec::with_capacity(n_points);
@@ -167,28 +193,37 @@ impl Galerkin {
             .zip(doublets.chunks_exact_mut(3 * self.n_vertices))
             .zip(influences.chunks_exact_mut(3 * self.n_triangles()))
         {
-            let (first, rest) = s.split_at_mut(self.n_triangles());
-            let (second, third) = rest.split_at_mut(self.n_triangles());
-            self.tests[t].doublets_and_sources(
-                &self.panels,
-                &self.spheres,
-                &mut scratch,
-                &mut d,
-                &mut [first, second, third],
-            );
-            for ((row, d), point) in rows.chunks_exact_mut(self.n_vertices).zip(&d).zip(&POINTS)
-            {
-                for (corners, values) in self.triangles.iter().zip(d) {
-                    for (&v, value) in corners.iter().zip(values) {
-                        row[v as usize] -= value;
+            let mut free = [1.0; 3];
+            seen.from(&self.tests[t], s, rows);
+            for (free, row) in free.iter_mut().zip(rows.chunks_exact(self.n_vertices)) {
+                *free -= row.iter().sum::<f64>();
+            }
+            if let Some(sign) = self.image.sign() {
+                let other = seen.from_image(&self.image_tests[t]);
+                for (s, value) in s.as_flattened_mut().iter_mut().zip(other.sources) {
+                    *s += sign * value;
+                }
+                for ((free, row), image) in free
+                    .iter_mut()
+                    .zip(rows.chunks_exact_mut(self.n_vertices))
+                    .zip(other.rows.chunks_exact(self.n_vertices))
+                {
+                    *free -= image.iter().sum::<f64>();
+                    for (value, image) in row.iter_mut().zip(image) {
+                        *value += sign * image;
                     }
                 }
-                let free = 1.0 - row.iter().sum::<f64>();
+            }
+            for ((free, row), point) in free
+                .iter()
+                .zip(rows.chunks_exact_mut(self.n_vertices))
+                .zip(&POINTS)
+            {
                 for (&v, shape) in self.triangles[t].iter().zip(point) {
                     row[v as usize] += free * shape;
                 }
-                free_terms.push(free);
             }
+            free_terms.extend(free);
         }
         let influences = influences.as_flattened();
         let transposed =
@@ -245,6 +280,72 @@ impl Galerkin {
                     right_hand_sides[(v, c)] += weight * evaluated[task].sources[(point, c)];
                 }
             }
+        }
+    }
+}
+
+/// Working space for what test triangles see of the surface.
+struct Seen<'a> {
+    of: &'a Galerkin,
+    scratch: PanelScratch,
+    doublets: [Vec<CornerValues>; 3],
+    image_rows: Vec<f64>,
+    image_sources: Vec<CornerValues>,
+}
+
+/// What the points of an image see.
+struct ImageSeen<'a> {
+    rows: &'a [f64],
+    sources: &'a [f64],
+}
+
+impl<'a> Seen<'a> {
+    fn new(of: &'a Galerkin) -> Self {
+        let has_image = usize::from(of.image.sign().is_some());
+        Self {
+            of,
+            scratch: of.panels.scratch(),
+            doublets: std::array::from_fn(|_| vec![[0.0; 3]; of.n_triangles()]),
+            image_rows: vec![0.0; has_image * 3 * of.n_vertices],
+            image_sources: vec![[0.0; 3]; has_image * 3 * of.n_triangles()],
+        }
+    }
+
+    /// Subtracts D from the three `rows` of vertices and puts S into `sources`.
+    fn from(&mut self, test: &TestTriangle, sources: &mut [CornerValues], rows: &mut [f64]) {
+        let n = self.of.n_triangles();
+        let (first, rest) = sources.split_at_mut(n);
+        let (second, third) = rest.split_at_mut(n);
+        test.doublets_and_sources(
+            &self.of.panels,
+            &self.of.spheres,
+            &mut self.scratch,
+            &mut self.doublets,
+            &mut [first, second, third],
+        );
+        for (row, d) in rows
+            .chunks_exact_mut(self.of.n_vertices)
+            .zip(&self.doublets)
+        {
+            for (corners, values) in self.of.triangles.iter().zip(d) {
+                for (&v, value) in corners.iter().zip(values) {
+                    row[v as usize] -= value;
+                }
+            }
+        }
+    }
+
+    /// As [`Self::from`], into own memory.
+    fn from_image(&mut self, test: &TestTriangle) -> ImageSeen<'_> {
+        let mut rows = std::mem::take(&mut self.image_rows);
+        let mut sources = std::mem::take(&mut self.image_sources);
+        rows.fill(0.0);
+        self.from(test, &mut sources, &mut rows);
+        self.image_rows = rows;
+        self.image_sources = sources;
+        ImageSeen {
+            rows: &self.image_rows,
+            sources: self.image_sources.as_flattened(),
         }
     }
 }

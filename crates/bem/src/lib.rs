@@ -16,12 +16,15 @@
 //! | `stations`, `wake`, `wake_builder` | the sheet and what jump it carries |
 //! | `contour`, `far_wake` | its semi-infinite part on a path in the complex plane |
 //! | `galerkin`, `near_field`, `dense` | the equations and their factorisation |
-//! | `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
-//! | `wake_influence`, `transfer`, `solve` | the reduced model |
+//! | `image` | half models |
+//! | `onset`, `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
+//! | `prepare`, `surface_flow` | factorised body and steady flow; pressures for pictures |
+//! | `wake_influence`, `reduce`, `blocks`, `transfer`, `solve` | the reduced model |
 //!
 //! Nothing here knows about files, clocks or terminals.
 
 mod adjacency;
+mod blocks;
 mod body_path;
 mod boundary;
 mod contour;
@@ -32,20 +35,27 @@ mod direct;
 mod error;
 mod far_wake;
 mod galerkin;
+mod image;
 mod near_field;
+mod onset;
 pub mod panels;
+mod prepare;
 mod pressure;
 mod progress;
+mod reduce;
 mod solve;
 mod stations;
 mod steady;
+mod surface_flow;
 mod transfer;
 mod wake;
 mod wake_builder;
 mod wake_influence;
 
 pub use error::{BemError, LaplaceError};
+pub use fladder_mesh::Symmetry;
 pub use progress::{Progress, Silent};
-pub use solve::{Flow, Plan, Problem, Sizes, Solution, Symmetry, WakeDirection, plan, solve};
+pub use solve::{Flow, Plan, Problem, Sizes, Solution, WakeDirection, plan, solve};
 pub use steady::{Loads, OnsetForm, SpanwiseJump, SteadyState};
+pub use surface_flow::{SurfaceFlow, UnsteadyPressure, surface_flow};
 pub use transfer::TransferModel;

@@ -1,19 +1,18 @@
 //! From a surface and its modes to the transfer model.
 
-use crate::boundary::ModeFields;
 use crate::cut::CutSurface;
-use crate::dense::{BodyOperator, DenseOperator};
+use crate::dense::BodyOperator;
 use crate::error::BemError;
-use crate::galerkin::Galerkin;
+use crate::onset::OnsetBasis;
+use crate::prepare::{Prepared, concatenate};
 use crate::pressure::Functionals;
 use crate::progress::Progress;
-use crate::steady::{SteadyReport, SteadyState, UnitOnsets};
-use crate::transfer::{Block, FarBlocks, NearBlocks, TransferModel};
+use crate::reduce::Reduction;
+use crate::steady::{SteadyReport, SteadyState};
+use crate::transfer::TransferModel;
 use crate::wake::{Wake, cut_and_wake};
-use crate::wake_influence::{WakeBlocks, WakeInfluence};
-use faer::{Mat, MatRef, c64};
-pub use fladder_mesh::Symmetry;
-use fladder_mesh::{SurfaceMode, TrailingEdge, TriMesh, Vec3};
+use faer::Mat;
+use fladder_mesh::{SurfaceMode, Symmetry, TrailingEdge, TriMesh, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// Incidence of the stream.
@@ -48,12 +47,19 @@ pub enum WakeDirection {
 /// A boundary-element problem at M = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a> {
-    /// Closed surface, judged before.
+    /// Closed surface, judged before; with a plane of symmetry open there, its vertices on
+    /// the plane at y = 0 exactly.
     pub mesh: &'a TriMesh,
+    /// Whole or half model. Q, forces and moments are those of the whole aircraft; the
+    /// modes must have the symmetry, and the stream lies in the plane.
+    pub symmetry: Symmetry,
     /// Where wakes leave; empty for none.
     pub trailing_edges: &'a [TrailingEdge],
     /// Rows and columns of Q.
     pub modes: &'a [SurfaceMode],
+    /// Columns in which the steady pressure turns and stretches with the surface: elastic
+    /// modes. May be empty for none.
+    pub turning: &'a [bool],
     /// Incidence.
     pub flow: Flow,
     /// Wake direction.
@@ -65,8 +71,30 @@ pub struct Problem<'a> {
     pub semichord: f64,
     /// Point about which steady moments are taken, m.
     pub moment_point: Vec3,
-    /// Whether the mesh is the half on y ≥ 0, and of which motion.
-    pub symmetry: Symmetry,
+}
+
+impl<'a> Problem<'a> {
+    /// A whole surface at zero incidence, the wake along the stream, lines on bodies found
+    /// from the mesh, moments about the origin, no turning of the steady pressure.
+    pub fn new(
+        mesh: &'a TriMesh,
+        trailing_edges: &'a [TrailingEdge],
+        modes: &'a [SurfaceMode],
+        semichord: f64,
+    ) -> Self {
+        Self {
+            mesh,
+            symmetry: Symmetry::None,
+            trailing_edges,
+            modes,
+            turning: &[],
+            flow: Flow::default(),
+            wake_direction: WakeDirection::Freestream,
+            body_lines: &[],
+            semichord,
+            moment_point: Vec3::zeros(),
+        }
+    }
 }
 
 /// Sizes of a problem.
@@ -127,13 +155,29 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
     let sizes = sizes(&surface, &wake);
     let n = sizes.unknowns as f64;
     let points = 3.0 * sizes.triangles as f64;
-    let functionals = (sizes.wake_columns + 2 * problem.modes.len()) as f64;
+    let modes = problem.modes.len();
+    let onsets = OnsetBasis::of(problem).len();
+    let functionals = (sizes.wake_columns + (onsets + 1) * modes) as f64;
+    // Each point of a half model is taken with its image; antisymmetric motion about a
+    // symmetric flow needs two operators, one after the other.
+    let images = if problem.symmetry == Symmetry::None {
+        1.0
+    } else {
+        2.0
+    };
+    let operators = if problem.symmetry == Symmetry::Antisymmetric {
+        2.0
+    } else {
+        1.0
+    };
     let nodes =
         (wake.paths.oscillating.nodes.len() * 2 + wake.paths.decaying.nodes.len()) as f64;
-    let far = points * sizes.wake_streamlines as f64 * nodes;
-    let pairs = points * (sizes.triangles as f64 + 2.0 * sizes.wake_elements as f64);
-    let flops = 2.0 / 3.0 * n.powi(3)
-        + 2.0 * n * n * (functionals + problem.modes.len() as f64)
+    let far = images * points * sizes.wake_streamlines as f64 * nodes;
+    let pairs = images
+        * points
+        * (operators * sizes.triangles as f64 + 2.0 * sizes.wake_elements as f64);
+    let flops = operators * 2.0 / 3.0 * n.powi(3)
+        + 2.0 * n * n * (functionals + ((1 + onsets) * modes) as f64)
         + 2.0 * points * functionals * (wake.slots.len() as f64)
         + 4.0 * far * functionals;
     let batch = 32.0 * 48.0 * n * 8.0;
@@ -157,15 +201,13 @@ fn rayon_threads() -> f64 {
 
 /// The cut surface and the wake of a problem.
 pub(crate) fn lay_out(problem: &Problem<'_>) -> Result<(CutSurface, Wake), BemError> {
-    if problem.symmetry.is_half() {
-        return Err(BemError::HalfModel);
-    }
     cut_and_wake(
         problem.mesh,
         problem.trailing_edges,
         wake_direction(problem),
         problem.body_lines,
         problem.semichord,
+        problem.symmetry != Symmetry::None,
     )
 }
 
@@ -187,7 +229,12 @@ fn sizes(surface: &CutSurface, wake: &Wake) -> Sizes {
     }
 }
 
-fn check_modes(problem: &Problem<'_>) -> Result<(), BemError> {
+pub(crate) fn check(problem: &Problem<'_>) -> Result<(), BemError> {
+    if problem.symmetry != Symmetry::None && problem.flow.beta != 0.0 {
+        return Err(BemError::SideslipOnHalf {
+            beta_deg: problem.flow.beta.to_degrees(),
+        });
+    }
     for mode in problem.modes {
         if mode.displacement.len() != problem.mesh.vertices.len() {
             return Err(BemError::ModeLength {
@@ -212,242 +259,55 @@ fn check_modes(problem: &Problem<'_>) -> Result<(), BemError> {
 
 /// Computes the transfer model and the steady flow.
 ///
-/// One real factorisation of the body operator; cost O(n³) for n vertices, memory 8 n²
-/// bytes. Same bits at any number of threads.
+/// One real factorisation of the body operator (two for antisymmetric motion, whose steady
+/// flow is symmetric); cost O(n³) for n vertices, memory 8 n² bytes. Same bits at any
+/// number of threads.
 ///
 /// # Errors
 /// [`BemError`]: modes that do not fit the mesh, trailing edges that allow no wake, a
-/// singular operator, an interruption.
+/// singular operator, sideslip on a half model, an interruption.
 pub fn solve(problem: &Problem<'_>, progress: &dyn Progress) -> Result<Solution, BemError> {
-    check_modes(problem)?;
-    let (surface, wake) = lay_out(problem)?;
-    let stream = problem.flow.stream();
-    let galerkin = Galerkin::new(&surface);
-    let fields = ModeFields::new(&galerkin, &surface.source, problem.modes, stream);
-    let sources = fields.sources(&galerkin);
-    let assembly = galerkin.assemble(sources.as_ref(), progress)?;
-    drop(sources);
-    let stage = "factorising";
-    progress.stage(stage, 1);
-    let operator = DenseOperator::new(assembly.rows, galerkin.n_vertices)?;
-    progress.advance(1);
-    if progress.cancelled() {
-        return Err(BemError::Interrupted { stage });
-    }
-    let mut potentials = assembly.right_hand_sides;
-    operator.solve(&mut potentials);
-    let influence = WakeInfluence {
-        galerkin: &galerkin,
-        wake: &wake,
-        free_terms: &assembly.free_terms,
-    };
-    let selector = selector(&surface);
-    let onsets = steady_onsets(
-        &influence,
-        &operator,
-        &selector,
-        &fields,
-        &potentials,
-        progress,
-    )?;
-    let functionals = Functionals::new(&galerkin, &fields, &onsets, &wake, stream);
-    let mut adjoint = concatenate(&[&selector, &functionals.p0, &functionals.p1]);
-    operator.solve_transpose(&mut adjoint);
-    drop(operator);
-    let mut blocks = influence.blocks(adjoint.as_ref(), progress)?;
-    add_carried(&mut blocks, &functionals, surface.columns.len());
-    let transfer = reduce(
-        problem,
-        &surface,
-        &wake,
-        &fields,
-        &functionals,
-        &potentials,
-        &blocks,
+    let prepared = Prepared::new(problem, progress)?;
+    let functionals = Functionals::new(
+        &prepared.body.galerkin,
+        &prepared.fields,
+        &prepared.onsets,
+        &prepared.wake,
     );
+    let parts: Vec<&Mat<f64>> = std::iter::once(&prepared.selector)
+        .chain(&functionals.p0)
+        .chain([&functionals.p1])
+        .collect();
+    let mut adjoint = concatenate(&parts);
+    prepared.body.operator.solve_transpose(&mut adjoint);
+    let prepared = prepared.without_operator();
+    let blocks = prepared.influence().blocks(adjoint.as_ref(), progress)?;
+    let reduction = Reduction {
+        problem,
+        wake: &prepared.wake,
+        fields: &prepared.fields,
+        functionals: &functionals,
+        potentials: &prepared.body.potentials,
+        selector: &prepared.selector,
+    };
+    let transfer = reduction.transfer(blocks);
     check_finite(problem, &transfer)?;
     let report = SteadyReport {
-        galerkin: &galerkin,
-        surface: &surface,
-        wake: &wake,
-        onsets: &onsets,
-        stream,
+        galerkin: &prepared.body.galerkin,
+        surface: &prepared.surface,
+        wake: &prepared.wake,
+        onsets: &prepared.onsets,
+        fields: &prepared.fields,
+        stream: problem.flow.stream(),
         moment_point: problem.moment_point,
+        symmetry: problem.symmetry,
     };
-    let steady = report.build(problem.trailing_edges, functionals.steady);
     Ok(Solution {
         transfer,
-        steady,
-        sizes: sizes(&surface, &wake),
-        notes: wake.notes,
+        steady: report.build(problem.trailing_edges),
+        sizes: sizes(&prepared.surface, &prepared.wake),
+        notes: prepared.wake.notes,
     })
-}
-
-/// K: +1 at upper, −1 at lower vertices.
-fn selector(surface: &CutSurface) -> Mat<f64> {
-    let mut k = Mat::zeros(surface.vertices.len(), surface.columns.len());
-    for (j, column) in surface.columns.iter().enumerate() {
-        k[(column.upper as usize, j)] = 1.0;
-        k[(column.lower as usize, j)] = -1.0;
-    }
-    k
-}
-
-/// Kᵀ φ.
-fn jumps_of(surface_selector: &Mat<f64>, potentials: MatRef<'_, f64>) -> Mat<f64> {
-    surface_selector.transpose() * potentials
-}
-
-/// Steady potentials and jumps for the three unit onsets.
-fn steady_onsets(
-    influence: &WakeInfluence<'_>,
-    operator: &dyn BodyOperator,
-    selector: &Mat<f64>,
-    fields: &ModeFields,
-    potentials: &Mat<f64>,
-    progress: &dyn Progress,
-) -> Result<UnitOnsets, BemError> {
-    let n = selector.ncols();
-    let first = fields.count + fields.inertial.len();
-    let mut phi = potentials.subcols(first, 3).to_owned();
-    let mut jumps = Mat::zeros(n, 3);
-    if n > 0 {
-        let mut response = influence.steady(n, progress)?;
-        operator.solve(&mut response);
-        let h = jumps_of(selector, response.as_ref());
-        let system = Mat::from_fn(n, n, |i, j| {
-            let unit = if i == j { 1.0 } else { 0.0 };
-            c64::new(unit - h[(i, j)], 0.0)
-        });
-        let right = jumps_of(selector, phi.as_ref());
-        let right = Mat::from_fn(n, 3, |i, j| c64::new(right[(i, j)], 0.0));
-        let solved =
-            crate::transfer::solve_complex(system, right).ok_or(BemError::Singular {
-                pivot: 0,
-                size: n,
-                value: 0.0,
-            })?;
-        jumps = Mat::from_fn(n, 3, |i, j| solved[(i, j)].re);
-        phi += &response * &jumps;
-    }
-    Ok(UnitOnsets::new(
-        influence.galerkin,
-        influence.wake,
-        &phi,
-        jumps,
-    ))
-}
-
-fn concatenate(parts: &[&Mat<f64>]) -> Mat<f64> {
-    let rows = parts[0].nrows();
-    let columns = parts.iter().map(|p| p.ncols()).sum();
-    let mut all = Mat::zeros(rows, columns);
-    let mut from = 0;
-    for part in parts {
-        all.subcols_mut(from, part.ncols()).copy_from(part);
-        from += part.ncols();
-    }
-    all
-}
-
-/// Adds the direct share of the jump on bodies to the rows of P0 and P1.
-fn add_carried(blocks: &mut WakeBlocks, functionals: &Functionals, columns: usize) {
-    let m = functionals.steady.len();
-    for (slot, p0, p1) in &functionals.carried {
-        for i in 0..m {
-            blocks.near[(columns + i, *slot)] += p0[i];
-            blocks.near[(columns + m + i, *slot)] += p1[i];
-        }
-    }
-}
-
-fn reduce(
-    problem: &Problem<'_>,
-    surface: &CutSurface,
-    wake: &Wake,
-    fields: &ModeFields,
-    functionals: &Functionals,
-    potentials: &Mat<f64>,
-    blocks: &WakeBlocks,
-) -> TransferModel {
-    let m = fields.count;
-    let b1 = potentials.subcols(0, m);
-    let mut b0 = Mat::<f64>::zeros(potentials.nrows(), m);
-    for (e, &mode) in fields.inertial.iter().enumerate() {
-        b0.col_mut(mode).copy_from(potentials.col(m + e));
-    }
-    let selector = selector(surface);
-    let block = |matrix: Mat<f64>| Block::new(matrix.as_ref());
-    TransferModel {
-        semichord: problem.semichord,
-        modes: m,
-        columns: surface.columns.len(),
-        jump1: block(jumps_of(&selector, b1)),
-        jump0: block(jumps_of(&selector, b0.as_ref())),
-        p0_b1: block(functionals.p0.transpose() * b1),
-        p0_b0: block(functionals.p0.transpose() * &b0),
-        p1_b1: block(functionals.p1.transpose() * b1),
-        p1_b0: block(functionals.p1.transpose() * &b0),
-        c1: Block::new(functionals.c1.as_ref()),
-        c0: Block::new(functionals.c0.as_ref()),
-        near: near_blocks(wake, &blocks.near),
-        oscillating: far_blocks(
-            wake,
-            &wake.paths.oscillating,
-            &blocks.far[0],
-            surface.columns.len(),
-        ),
-        decaying: far_blocks(
-            wake,
-            &wake.paths.decaying,
-            &blocks.far[1],
-            surface.columns.len(),
-        ),
-    }
-}
-
-fn near_blocks(wake: &Wake, near: &Mat<f64>) -> NearBlocks {
-    let mut stations: Vec<f64> = wake.slots.iter().map(|s| s.xi).collect();
-    stations.sort_by(f64::total_cmp);
-    stations.dedup();
-    let mut blocks = NearBlocks {
-        stations,
-        ..NearBlocks::default()
-    };
-    for (r, slot) in wake.slots.iter().enumerate() {
-        let station = blocks.stations.partition_point(|x| *x < slot.xi);
-        for &(column, weight) in &wake.threads[slot.thread] {
-            blocks.entries.push((column as u32, station as u32));
-            blocks
-                .values
-                .extend((0..near.nrows()).map(|i| weight * near[(i, r)]));
-        }
-    }
-    blocks
-}
-
-fn far_blocks(
-    wake: &Wake,
-    path: &crate::contour::Path,
-    far: &Mat<c64>,
-    columns: usize,
-) -> FarBlocks {
-    let (f, n) = (far.nrows(), path.nodes.len());
-    let mut re = vec![0.0; f * columns * n];
-    let mut im = re.clone();
-    for (line, &thread) in wake.far_threads.iter().enumerate() {
-        for &(column, weight) in &wake.threads[thread] {
-            for node in 0..n {
-                let from = (node * columns + column) * f;
-                for i in 0..f {
-                    let entry = far[(i, line * n + node)];
-                    re[from + i] += weight * entry.re;
-                    im[from + i] += weight * entry.im;
-                }
-            }
-        }
-    }
-    FarBlocks::new(path, re, im)
 }
 
 fn check_finite(problem: &Problem<'_>, transfer: &TransferModel) -> Result<(), BemError> {

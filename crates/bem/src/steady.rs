@@ -4,11 +4,12 @@
 //! on a triangle is V₀ = U − n (n·U) + ∇_s φ₀ and c_p0 = 1 − |V₀|². Loads are quadratic in
 //! the onset, so that any incidence follows from the three unit solutions.
 
+use crate::boundary::ModeFields;
 use crate::cut::CutSurface;
 use crate::galerkin::Galerkin;
 use crate::wake::Wake;
 use faer::Mat;
-use fladder_mesh::Vec3;
+use fladder_mesh::{Symmetry, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// Velocity on every triangle for onsets along x, y and z, and the wake jumps.
@@ -110,6 +111,8 @@ pub struct SteadyState {
     pub loads: Loads,
     /// −∮ c_p0 n·φ_i dS of every mode, m² for unit-metre modes.
     pub generalised_forces: Vec<f64>,
+    /// The same as quadratic forms of the onset's components: entry [mode][a][b].
+    pub generalised_forms: Vec<[[f64; 3]; 3]>,
     /// Lift per q∞ from the jump far downstream, 2 ∫ κ₀ dy over the whole sheet (Kutta
     /// and Joukowski), m²: beside the pressure's it shows how well the mesh resolves
     /// the flow.
@@ -126,24 +129,32 @@ pub struct SteadyState {
 }
 
 impl SteadyState {
-    /// Loads for another onset (unit vector), with the wake left where it is.
+    /// Loads for another onset (unit vector), with the wake left where it is; for half
+    /// models within the plane of symmetry.
     pub fn loads_at(&self, stream: [f64; 3]) -> Loads {
-        let evaluate = |form: &OnsetForm| {
-            std::array::from_fn(|axis| {
-                let mut sum = 0.0;
-                for (a, row) in form[axis].iter().enumerate() {
-                    for (b, value) in row.iter().enumerate() {
-                        sum += value * stream[a] * stream[b];
-                    }
-                }
-                sum
-            })
-        };
+        let evaluate =
+            |form: &OnsetForm| std::array::from_fn(|axis| quadratic(&form[axis], stream));
         Loads {
             force: evaluate(&self.force_form),
             moment: evaluate(&self.moment_form),
         }
     }
+
+    /// Generalised forces for another onset, as [`Self::loads_at`].
+    pub fn generalised_forces_at(&self, stream: [f64; 3]) -> Vec<f64> {
+        self.generalised_forms
+            .iter()
+            .map(|form| quadratic(form, stream))
+            .collect()
+    }
+}
+
+/// Σ form_ab U_a U_b.
+fn quadratic(form: &[[f64; 3]; 3], stream: [f64; 3]) -> f64 {
+    form.iter()
+        .zip(stream)
+        .map(|(row, u)| u * row.iter().zip(stream).map(|(v, w)| v * w).sum::<f64>())
+        .sum()
 }
 
 /// A load along each axis as a quadratic form of the onset: [axis][a][b].
@@ -155,17 +166,17 @@ pub(crate) struct SteadyReport<'a> {
     pub(crate) surface: &'a CutSurface,
     pub(crate) wake: &'a Wake,
     pub(crate) onsets: &'a UnitOnsets,
+    pub(crate) fields: &'a ModeFields,
     pub(crate) stream: Vec3,
     pub(crate) moment_point: Vec3,
+    /// What the motion does under reflection.
+    pub(crate) symmetry: Symmetry,
 }
 
 impl SteadyReport<'_> {
-    pub(crate) fn build(
-        &self,
-        chains: &[fladder_mesh::TrailingEdge],
-        generalised_forces: Vec<f64>,
-    ) -> SteadyState {
+    pub(crate) fn build(&self, chains: &[fladder_mesh::TrailingEdge]) -> SteadyState {
         let (force_form, moment_form) = self.forms();
+        let generalised_forms = self.generalised_forms();
         let wake_jumps: Vec<SpanwiseJump> = (0..chains.len())
             .map(|c| self.spanwise(c, &chains[c]))
             .collect();
@@ -178,13 +189,15 @@ impl SteadyReport<'_> {
                 force: [0.0; 3],
                 moment: [0.0; 3],
             },
-            generalised_forces,
+            generalised_forces: Vec::new(),
+            generalised_forms,
             lift_by_pressure: 0.0,
             lowest_pressure: self.lowest_pressure(),
             force_form,
             moment_form,
         };
         state.loads = state.loads_at(self.stream.into());
+        state.generalised_forces = state.generalised_forces_at(self.stream.into());
         state.lift_by_pressure = Vec3::from(state.loads.force).dot(&lift_direction);
         state
     }
@@ -217,7 +230,45 @@ impl SteadyReport<'_> {
                 }
             }
         }
+        if self.symmetry != Symmetry::None {
+            // The other half doubles x, z and the moment about y and cancels the rest.
+            for axis in 0..3 {
+                let (f, m) = if axis == 1 { (0.0, 2.0) } else { (2.0, 0.0) };
+                for (force, moment) in force[axis]
+                    .as_flattened_mut()
+                    .iter_mut()
+                    .zip(moment[axis].as_flattened_mut())
+                {
+                    *force *= f;
+                    *moment *= m;
+                }
+            }
+        }
         (force, moment)
+    }
+
+    /// −∮ c_p0 n·φ_i dS as forms of U; the steady flow of a half model does no work on
+    /// antisymmetric modes.
+    fn generalised_forms(&self) -> Vec<[[f64; 3]; 3]> {
+        let factor = match self.symmetry {
+            Symmetry::None => 1.0,
+            Symmetry::Symmetric => 2.0,
+            Symmetry::Antisymmetric => 0.0,
+        };
+        let mut forms = vec![[[0.0; 3]; 3]; self.fields.count];
+        for (i, form) in forms.iter_mut().enumerate() {
+            for t in 0..self.galerkin.n_triangles() {
+                let work = factor * self.fields.mean_normal(i, t) * self.galerkin.areas[t];
+                let v = &self.onsets.velocities[t];
+                for a in 0..3 {
+                    for b in 0..3 {
+                        let pressure = if a == b { 1.0 } else { 0.0 } - v[a].dot(&v[b]);
+                        form[a][b] -= pressure * work;
+                    }
+                }
+            }
+        }
+        forms
     }
 
     fn spanwise(&self, c: usize, chain: &fladder_mesh::TrailingEdge) -> SpanwiseJump {
@@ -250,13 +301,19 @@ impl SteadyReport<'_> {
                 .map(|&(column, weight)| weight * self.column_jump(column))
                 .sum()
         };
-        far.strips
+        let sum: f64 = far
+            .strips
             .iter()
             .map(|&[a, b]| {
                 let step = far.anchors[b as usize] - far.anchors[a as usize];
                 (jump(a) + jump(b)) * self.stream.cross(&step).dot(&lift)
             })
-            .sum()
+            .sum();
+        if self.symmetry == Symmetry::None {
+            sum
+        } else {
+            2.0 * sum
+        }
     }
 
     fn column_jump(&self, column: usize) -> f64 {

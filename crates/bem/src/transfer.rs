@@ -1,4 +1,4 @@
-//! The reduced transfer model: Q at any complex s from small blocks.
+//! The reduced transfer model: Q at any complex s, in any stream, from small blocks.
 //!
 //! With A₀ the body operator, K the selector κ = Kᵀφ, W(s) = Σ_r e^{−sξ_r} W_r the wake and
 //! L = A₀⁻ᵀ [K, P0, P1], everything of the size of the mesh is contracted once:
@@ -9,95 +9,21 @@
 //!
 //! It is an identity (Woodbury), not an approximation: the test against the complex
 //! solve of the whole system gives 1e-14.
+//!
+//! P0, b₀ and C1 are linear and C0 is quadratic in the stream U. Where the wake does not
+//! follow the stream they are kept for the unit onsets, P0 = Σ_a U_a P0_a, and Q(s; U) is
+//! as exact at every incidence as at the one computed.
 
+use crate::blocks::{Block, FarBlocks, NearBlocks};
 use crate::contour::{Path, SECTOR_LIMIT_DEG};
 use crate::error::LaplaceError;
+use crate::onset::OnsetBasis;
+use crate::solve::Flow;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatRef, Par, c64};
+use faer::{Accum, Mat, Par, c64};
 use serde::{Deserialize, Serialize};
-
-/// Pressure coefficient against the pressure in units of ρU²: c_p = 2p.
-const COEFFICIENT: f64 = 2.0;
-
-/// A real matrix by columns, as it is stored.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Block {
-    rows: usize,
-    columns: usize,
-    values: Vec<f64>,
-}
-
-impl Block {
-    pub(crate) fn new(matrix: MatRef<'_, f64>) -> Self {
-        let values = (0..matrix.ncols())
-            .flat_map(|j| (0..matrix.nrows()).map(move |i| matrix[(i, j)]))
-            .collect();
-        Self {
-            rows: matrix.nrows(),
-            columns: matrix.ncols(),
-            values,
-        }
-    }
-
-    fn view(&self) -> MatRef<'_, f64> {
-        MatRef::from_column_major_slice(&self.values, self.rows, self.columns)
-    }
-
-    fn is_sound(&self, rows: usize, columns: usize) -> bool {
-        self.rows == rows && self.columns == columns && self.values.len() == rows * columns
-    }
-}
-
-/// Near rows of the wake: the columns of H that go with e^{−sξ}.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct NearBlocks {
-    pub(crate) stations: Vec<f64>,
-    /// Column and station of each entry.
-    pub(crate) entries: Vec<(u32, u32)>,
-    /// One functional vector an entry.
-    pub(crate) values: Vec<f64>,
-}
-
-/// The far wake on one path.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct FarBlocks {
-    /// ξ of each node.
-    nodes: Vec<(f64, f64)>,
-    /// Real parts, node by node, column by column, one functional vector each.
-    re: Vec<f64>,
-    /// Imaginary parts.
-    im: Vec<f64>,
-}
-
-impl FarBlocks {
-    /// `re` and `im` in the order of the fields.
-    pub(crate) fn new(path: &Path, re: Vec<f64>, im: Vec<f64>) -> Self {
-        let nodes = path.nodes.iter().map(|n| (n.re, n.im)).collect();
-        Self { nodes, re, im }
-    }
-
-    /// Adds Σ e^{−sξ} (re + i im) to `sum`, whose two columns are real and imaginary part.
-    fn add(&self, s: c64, sum: &mut Mat<f64>) {
-        let (rows, nodes) = (sum.nrows(), self.nodes.len());
-        let decay = |i: usize| (-s * c64::new(self.nodes[i].0, self.nodes[i].1)).exp();
-        let real = Mat::from_fn(
-            nodes,
-            2,
-            |i, j| if j == 0 { decay(i).re } else { decay(i).im },
-        );
-        let turned = Mat::from_fn(
-            nodes,
-            2,
-            |i, j| if j == 0 { -decay(i).im } else { decay(i).re },
-        );
-        for (part, weights) in [(&self.re, &real), (&self.im, &turned)] {
-            let part = MatRef::from_column_major_slice(part, rows, nodes);
-            matmul(sum.as_mut(), Accum::Add, part, weights, 1.0, Par::Seq);
-        }
-    }
-}
 
 /// Everything that Q(s) needs, free of the mesh.
 ///
@@ -107,16 +33,23 @@ pub struct TransferModel {
     pub(crate) semichord: f64,
     pub(crate) modes: usize,
     pub(crate) columns: usize,
-    /// Kᵀ b₁ and Kᵀ b₀.
+    pub(crate) basis: OnsetBasis,
+    /// Incidence computed for.
+    pub(crate) flow: Flow,
+    /// 2 of c_p = 2p, twice that for half models.
+    pub(crate) factor: f64,
+    /// Kᵀ b₁, and Kᵀ b₀ of each onset.
     pub(crate) jump1: Block,
-    pub(crate) jump0: Block,
-    /// P0ᵀ b₁, P0ᵀ b₀, P1ᵀ b₁, P1ᵀ b₀.
-    pub(crate) p0_b1: Block,
-    pub(crate) p0_b0: Block,
+    pub(crate) jump0: Vec<Block>,
+    /// P0_aᵀ b₁, P0_aᵀ b₀_b (at a · onsets + b), P1ᵀ b₁, P1ᵀ b₀_a.
+    pub(crate) p0_b1: Vec<Block>,
+    pub(crate) p0_b0: Vec<Block>,
     pub(crate) p1_b1: Block,
-    pub(crate) p1_b0: Block,
-    pub(crate) c1: Block,
-    pub(crate) c0: Block,
+    pub(crate) p1_b0: Vec<Block>,
+    pub(crate) c1: Vec<Block>,
+    /// At a · onsets + b.
+    pub(crate) c0: Vec<Block>,
+    /// Functionals: columns, then modes of P0 for each onset, then modes of P1.
     pub(crate) near: NearBlocks,
     pub(crate) oscillating: FarBlocks,
     pub(crate) decaying: FarBlocks,
@@ -133,48 +66,47 @@ impl TransferModel {
         self.semichord
     }
 
+    /// Incidence at which [`Self::q`] is taken.
+    pub fn flow(&self) -> Flow {
+        self.flow
+    }
+
+    /// Whether [`Self::q_at`] can be asked for other incidences.
+    pub fn serves(&self, flow: Flow) -> bool {
+        self.basis.components(flow.stream()).is_some()
+    }
+
     /// Whether all blocks have the sizes they must have and finite values.
     pub fn is_sound(&self) -> bool {
-        let (m, n, f) = (self.modes, self.columns, self.functionals());
-        let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
-        let square = [
-            &self.p0_b1,
-            &self.p0_b0,
-            &self.p1_b1,
-            &self.p1_b0,
-            &self.c1,
-            &self.c0,
-        ];
-        let near = &self.near;
+        let (m, n, f, onsets) = (
+            self.modes,
+            self.columns,
+            self.functionals(),
+            self.basis.len(),
+        );
+        let all = |blocks: &[Block], count: usize, rows: usize| {
+            blocks.len() == count && blocks.iter().all(|b| b.is_sound(rows, m))
+        };
         self.semichord.is_finite()
             && self.semichord > 0.0
+            && self.factor.is_finite()
+            && self.basis.is_sound()
+            && self.serves(self.flow)
             && self.jump1.is_sound(n, m)
-            && self.jump0.is_sound(n, m)
-            && square.iter().all(|b| b.is_sound(m, m) && finite(&b.values))
-            && finite(&self.jump1.values)
-            && finite(&self.jump0.values)
-            && finite(&near.stations)
-            && finite(&near.values)
-            && near.values.len() == near.entries.len() * f
-            && near
-                .entries
-                .iter()
-                .all(|&(c, s)| (c as usize) < n && (s as usize) < near.stations.len())
-            && [&self.oscillating, &self.decaying].iter().all(|far| {
-                let size = far.nodes.len() * n * f;
-                far.re.len() == size
-                    && far.im.len() == size
-                    && far
-                        .nodes
-                        .iter()
-                        .all(|(re, im)| re.is_finite() && im.is_finite())
-                    && finite(&far.re)
-                    && finite(&far.im)
-            })
+            && all(&self.jump0, onsets, n)
+            && all(&self.p0_b1, onsets, m)
+            && all(&self.p0_b0, onsets * onsets, m)
+            && self.p1_b1.is_sound(m, m)
+            && all(&self.p1_b0, onsets, m)
+            && all(&self.c1, onsets, m)
+            && all(&self.c0, onsets * onsets, m)
+            && self.near.is_sound(f, n)
+            && self.oscillating.is_sound(f, n)
+            && self.decaying.is_sound(f, n)
     }
 
     fn functionals(&self) -> usize {
-        self.columns + 2 * self.modes
+        self.columns + (self.basis.len() + 1) * self.modes
     }
 
     /// Q(p), whole aircraft, m² for unit-metre modes: row force, column motion.
@@ -186,6 +118,17 @@ impl TransferModel {
     /// [`LaplaceError`] on the cut, for values that are no numbers, at a pole, and where the
     /// motion decays too fast (beyond about |g| = 12 b / reach, reach the wake's width).
     pub fn q(&self, p: c64) -> Result<Mat<c64>, LaplaceError> {
+        self.q_at(p, self.flow)
+    }
+
+    /// Q(p) at another incidence, from the same factorisation and as exact.
+    ///
+    /// The wake stays where it is: it must lie along x, or be none (sideslip only where
+    /// the model was made with some).
+    ///
+    /// # Errors
+    /// As [`Self::q`], and [`LaplaceError::OtherIncidence`] where [`Self::serves`] says no.
+    pub fn q_at(&self, p: c64, flow: Flow) -> Result<Mat<c64>, LaplaceError> {
         let (g, k) = (p.re, p.im);
         if !g.is_finite() || !k.is_finite() {
             return Err(LaplaceError::NotFinite { g, k });
@@ -193,11 +136,19 @@ impl TransferModel {
         if k == 0.0 && g < 0.0 {
             return Err(LaplaceError::BranchCut { g });
         }
+        let Some(stream) = self.basis.components(flow.stream()) else {
+            return Err(LaplaceError::OtherIncidence {
+                alpha_deg: flow.alpha.to_degrees(),
+                beta_deg: flow.beta.to_degrees(),
+            });
+        };
         let s = c64::new(g, k.abs()) / self.semichord;
         if self.columns > 0 && !Path::keeps_digits(&self.far(s).nodes, s) {
             return Err(LaplaceError::TooDamped { g, k });
         }
-        let mut q = self.evaluate(s).ok_or(LaplaceError::Singular { g, k })?;
+        let mut q = self
+            .evaluate(s, &stream)
+            .ok_or(LaplaceError::Singular { g, k })?;
         for j in 0..self.modes {
             for i in 0..self.modes {
                 if k == 0.0 {
@@ -210,25 +161,38 @@ impl TransferModel {
         Ok(q)
     }
 
-    fn evaluate(&self, s: c64) -> Option<Mat<c64>> {
+    /// Q(s) for a stream given by its components along the onsets.
+    fn evaluate(&self, s: c64, stream: &[f64]) -> Option<Mat<c64>> {
         let (m, n) = (self.modes, self.columns);
-        let linear = |one: &Block, zero: &Block| {
-            let (one, zero) = (one.view(), zero.view());
-            Mat::from_fn(one.nrows(), one.ncols(), |i, j| {
-                s * one[(i, j)] + zero[(i, j)]
-            })
-        };
-        let quadratic = linear(&self.p1_b1, &self.p1_b0);
-        let mut q = linear(&self.p0_b1, &self.p0_b0) + linear(&self.c1, &self.c0);
-        q += Mat::from_fn(m, m, |i, j| s * quadratic[(i, j)]);
+        let once = |blocks: &[Block]| combine(blocks, stream);
+        let pairs: Vec<f64> = stream
+            .iter()
+            .flat_map(|a| stream.iter().map(move |b| a * b))
+            .collect();
+        let twice = |blocks: &[Block]| combine(blocks, &pairs);
+        let constant = twice(&self.p0_b0) + twice(&self.c0);
+        let linear = once(&self.p0_b1) + once(&self.p1_b0) + once(&self.c1);
+        let quadratic = self.p1_b1.view();
+        let mut q = Mat::from_fn(m, m, |i, j| {
+            s * (s * quadratic[(i, j)] + linear[(i, j)]) + constant[(i, j)]
+        });
         if n > 0 {
             let h = self.wake_response(s);
             let system = Mat::from_fn(n, n, |i, j| {
                 let unit = if i == j { 1.0 } else { 0.0 };
                 unit - h[(i, j)]
             });
-            let jumps = solve_complex(system, linear(&self.jump1, &self.jump0))?;
-            let rows = Mat::from_fn(m, n, |i, j| h[(n + i, j)] + s * h[(n + m + i, j)]);
+            let (jump1, jump0) = (self.jump1.view(), once(&self.jump0));
+            let jumps = Mat::from_fn(n, m, |i, j| s * jump1[(i, j)] + jump0[(i, j)]);
+            let jumps = solve_complex(system, jumps)?;
+            let last = n + stream.len() * m;
+            let rows = Mat::from_fn(m, n, |i, j| {
+                let mut row = s * h[(last + i, j)];
+                for (a, u) in stream.iter().enumerate() {
+                    row += h[(n + a * m + i, j)] * *u;
+                }
+                row
+            });
             matmul(
                 &mut q,
                 Accum::Add,
@@ -240,7 +204,7 @@ impl TransferModel {
         }
         for j in 0..m {
             for i in 0..m {
-                q[(i, j)] *= COEFFICIENT;
+                q[(i, j)] *= self.factor;
             }
         }
         Some(q)
@@ -251,31 +215,9 @@ impl TransferModel {
         let f = self.functionals();
         let mut h = Mat::<f64>::zeros(f * self.columns, 2);
         self.far(s).add(s, &mut h);
-        let decay: Vec<c64> = self
-            .near
-            .stations
-            .iter()
-            .map(|xi| (-s * xi).exp())
-            .collect();
-        let (mut re, mut im) = (vec![0.0; f * self.columns], vec![0.0; f * self.columns]);
-        for (&(column, station), values) in self
-            .near
-            .entries
-            .iter()
-            .zip(self.near.values.chunks_exact(f))
-        {
-            let factor = decay[station as usize];
-            let range = column as usize * f..(column as usize + 1) * f;
-            for (total, value) in re[range.clone()].iter_mut().zip(values) {
-                *total += factor.re * value;
-            }
-            for (total, value) in im[range].iter_mut().zip(values) {
-                *total += factor.im * value;
-            }
-        }
+        self.near.add(s, f, &mut h);
         Mat::from_fn(f, self.columns, |i, j| {
-            let at = j * f + i;
-            c64::new(h[(at, 0)] + re[at], h[(at, 1)] + im[at])
+            c64::new(h[(j * f + i, 0)], h[(j * f + i, 1)])
         })
     }
 
@@ -287,6 +229,18 @@ impl TransferModel {
             &self.decaying
         }
     }
+}
+
+/// Σ weight · block.
+fn combine(blocks: &[Block], weights: &[f64]) -> Mat<f64> {
+    let first = blocks[0].view();
+    Mat::from_fn(first.nrows(), first.ncols(), |i, j| {
+        blocks
+            .iter()
+            .zip(weights)
+            .map(|(block, weight)| weight * block.view()[(i, j)])
+            .sum()
+    })
 }
 
 /// X with A X = B, or none where A is singular to working precision.

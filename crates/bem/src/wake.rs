@@ -34,12 +34,12 @@ pub(crate) struct JumpSheet {
 }
 
 impl JumpSheet {
-    /// Adds corner values to their slots.
-    pub(crate) fn gather(&self, corners: &[[f64; 3]], out: &mut [f64]) {
+    /// Adds sign × corner values to their slots.
+    pub(crate) fn gather(&self, corners: &[[f64; 3]], sign: f64, out: &mut [f64]) {
         for (values, slots) in corners.iter().zip(&self.corner_slots) {
             for (value, &slot) in values.iter().zip(slots) {
                 if slot != NO_SLOT {
-                    out[slot as usize] += value;
+                    out[slot as usize] += sign * value;
                 }
             }
         }
@@ -80,13 +80,14 @@ impl Wake {
     }
 }
 
-/// The cut surface and its wake.
+/// The cut surface and its wake; `half`: the other half is an image in y = 0.
 pub(crate) fn cut_and_wake(
     mesh: &TriMesh,
     chains: &[TrailingEdge],
     direction: Vec3,
     body_lines: &[[u32; 2]],
     semichord: f64,
+    half: bool,
 ) -> Result<(CutSurface, Wake), BemError> {
     let adjacency = Adjacency::new(mesh.vertices.len(), &mesh.triangles);
     let tracer = Tracer {
@@ -97,7 +98,7 @@ pub(crate) fn cut_and_wake(
         named: body_lines,
     };
     let paths = tracer.trace()?;
-    let surface = CutSurface::new(mesh, &adjacency, chains, &paths)?;
-    let wake = Builder::new(mesh, chains, &surface, &paths, direction, semichord).build();
+    let surface = CutSurface::new(mesh, &adjacency, chains, &paths, half)?;
+    let wake = Builder::new(mesh, chains, &surface, &paths, direction, semichord, half).build();
     Ok((surface, wake))
 }

@@ -8,11 +8,15 @@ use crate::body_path::BodyPaths;
 use crate::contour::Paths;
 use crate::cut::CutSurface;
 use crate::far_wake::FarWake;
+use crate::image::mirrored;
 use crate::panels::PanelSet;
 use crate::stations::{RowLaw, stations};
 use crate::wake::{JumpSheet, NO_SLOT, Slot, Wake};
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
 use std::collections::HashMap;
+
+/// Diagonals that differ less than this are as long as each other.
+const SAME_LENGTH: f64 = 1e-9;
 
 /// Distance of the far part behind the last body point, in semichords.
 const FAR_MARGIN: f64 = 0.6;
@@ -33,6 +37,8 @@ pub(crate) struct Builder<'a> {
     direction: Vec3,
     stations: Vec<f64>,
     margin: f64,
+    /// Whether the other half is an image.
+    half: bool,
     threads: Vec<Vec<(usize, f64)>>,
     slots: Vec<Slot>,
     slot_of: HashMap<(usize, u64), u32>,
@@ -53,6 +59,7 @@ impl<'a> Builder<'a> {
         paths: &'a BodyPaths,
         direction: Vec3,
         semichord: f64,
+        half: bool,
     ) -> Self {
         let mut builder = Self {
             mesh,
@@ -62,6 +69,7 @@ impl<'a> Builder<'a> {
             direction,
             stations: Vec::new(),
             margin: FAR_MARGIN * semichord,
+            half,
             threads: Vec::new(),
             slots: Vec::new(),
             slot_of: HashMap::new(),
@@ -403,7 +411,7 @@ impl<'a> Builder<'a> {
                 .map(|(line, r)| line.vertices[r - line.first_station]);
             let p = ids.map(|i| self.sheet_vertices[i as usize]);
             let [i, j, k, l] = ids;
-            if (p[0] - p[2]).norm() <= (p[1] - p[3]).norm() {
+            if first_diagonal(&p) {
                 self.sheet_triangles.extend([[i, j, k], [i, k, l]]);
             } else {
                 self.sheet_triangles.extend([[i, j, l], [j, k, l]]);
@@ -494,11 +502,30 @@ impl<'a> Builder<'a> {
     fn reach(&self) -> f64 {
         let flat = |v: &Vec3| v - self.direction * v.dot(&self.direction);
         let anchors: Vec<Vec3> = self.far.anchors.iter().map(flat).collect();
+        let images = self
+            .mesh
+            .vertices
+            .iter()
+            .filter(|_| self.half)
+            .map(mirrored);
         self.mesh
             .vertices
             .iter()
-            .map(flat)
+            .copied()
+            .chain(images)
+            .map(|v| flat(&v))
             .flat_map(|v| anchors.iter().map(move |a| (v - a).norm()))
             .fold(self.margin, f64::max)
     }
+}
+
+/// Whether the quadrangle is divided from its first to its third corner: along the shorter
+/// diagonal, and where both are as long from the upstream corner nearer to the plane
+/// y = 0, so that the sheet of a symmetric surface is symmetric.
+fn first_diagonal(p: &[Vec3; 4]) -> bool {
+    let (first, second) = ((p[0] - p[2]).norm(), (p[1] - p[3]).norm());
+    if (first - second).abs() > SAME_LENGTH * (first + second) {
+        return first < second;
+    }
+    p[0].y.abs() <= p[3].y.abs()
 }

@@ -6,7 +6,7 @@
 use crate::contour::Path;
 use crate::error::BemError;
 use crate::galerkin::Galerkin;
-use crate::near_field::{POINTS, Spheres};
+use crate::near_field::{POINTS, Spheres, TestTriangle};
 use crate::panels::{CornerValues, PanelScratch};
 use crate::progress::Progress;
 use crate::wake::Wake;
@@ -199,48 +199,51 @@ impl WakeInfluence<'_> {
     }
 }
 
-#[cfg(test)]
 impl WakeInfluence<'_> {
-    /// T W(s) of all columns, for the direct solve that checks the reduced model.
-    pub(crate) fn tested_wake(&self, s: c64, columns: usize) -> Mat<c64> {
-        let argument = s.arg().to_degrees();
-        let paths = &self.wake.paths;
-        let path = if argument <= crate::contour::SECTOR_LIMIT_DEG {
-            &paths.oscillating
-        } else {
-            &paths.decaying
-        };
-        let mut evaluator = Evaluator::new(self);
-        let nodes = path.nodes.len();
-        let mut far = vec![c64::new(0.0, 0.0); self.wake.far.anchors.len() * nodes];
+    /// T W(s): test functions × columns.
+    pub(crate) fn tested(
+        &self,
+        s: c64,
+        columns: usize,
+        progress: &dyn Progress,
+    ) -> Result<Mat<c64>, BemError> {
+        let stage = "evaluating the wake";
+        let n_triangles = self.galerkin.n_triangles();
+        progress.stage(stage, n_triangles as u64);
+        let path = self.wake.paths.of(s);
+        let rows: Vec<Vec<c64>> = (0..n_triangles)
+            .into_par_iter()
+            .map_init(
+                || Evaluator::new(self),
+                |evaluator, t| {
+                    if progress.cancelled() {
+                        return Vec::new();
+                    }
+                    let mut out = vec![c64::new(0.0, 0.0); 3 * columns];
+                    evaluator.near(t);
+                    for (q, part) in out.chunks_exact_mut(columns).enumerate() {
+                        evaluator.row(t, q, s, path, part);
+                    }
+                    progress.advance(1);
+                    out
+                },
+            )
+            .collect();
+        if progress.cancelled() {
+            return Err(BemError::Interrupted { stage });
+        }
         let mut tested = Mat::zeros(self.galerkin.n_vertices, columns);
-        for t in 0..self.galerkin.n_triangles() {
-            evaluator.near(t);
-            for q in 0..3 {
-                let near = evaluator.slots[q].clone();
-                evaluator.far_row(t, q, path, &mut far);
-                let mut row = vec![c64::new(0.0, 0.0); columns];
-                for (slot, value) in self.wake.slots.iter().zip(&near) {
-                    for &(column, weight) in &self.wake.threads[slot.thread] {
-                        row[column] += weight * value * (-s * slot.xi).exp();
-                    }
-                }
-                for (values, &thread) in far.chunks_exact(nodes).zip(&self.wake.far_threads) {
-                    for (value, xi) in values.iter().zip(&path.nodes) {
-                        for &(column, weight) in &self.wake.threads[thread] {
-                            row[column] += weight * value * (-s * xi).exp();
-                        }
-                    }
-                }
+        for (t, row) in rows.iter().enumerate() {
+            for (q, values) in row.chunks_exact(columns).enumerate() {
                 for (corner, &v) in self.galerkin.triangles[t].iter().enumerate() {
                     let weight = self.galerkin.test_weight(t, q, corner);
-                    for (c, value) in row.iter().enumerate() {
+                    for (c, value) in values.iter().enumerate() {
                         tested[(v as usize, c)] += weight * value;
                     }
                 }
             }
         }
-        tested
+        Ok(tested)
     }
 }
 
@@ -257,6 +260,7 @@ struct Evaluator<'a> {
     slots: [Vec<f64>; 3],
     distances: Vec<c64>,
     lines: Vec<c64>,
+    image_far: Vec<c64>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -274,14 +278,26 @@ impl<'a> Evaluator<'a> {
             slots: std::array::from_fn(|_| vec![0.0; wake.slots.len()]),
             distances: Vec::new(),
             lines: Vec::new(),
+            image_far: Vec::new(),
         }
     }
 
     /// Influence of every slot at the points of one triangle: free sheet, and on bodies
-    /// D^up − c N^up of the corners that carry a jump.
+    /// D^up − c N^up of the corners that carry a jump; the image's sheet with its sign.
     fn near(&mut self, triangle: usize) {
+        let galerkin = self.of.galerkin;
+        for out in &mut self.slots {
+            out.fill(0.0);
+        }
+        self.seen_from(&galerkin.tests[triangle], Some(triangle), 1.0);
+        if let Some(sign) = galerkin.image.sign() {
+            self.seen_from(&galerkin.image_tests[triangle], None, sign);
+        }
+    }
+
+    /// Adds sign × the influence of the sheets; `own` is the triangle where c N^up acts.
+    fn seen_from(&mut self, test: &TestTriangle, own: Option<usize>, sign: f64) {
         let wake = self.of.wake;
-        let test = &self.of.galerkin.tests[triangle];
         test.doublets(
             &wake.near.panels,
             &self.near_spheres,
@@ -294,28 +310,44 @@ impl<'a> Evaluator<'a> {
             &mut self.body_scratch,
             &mut self.body_values,
         );
-        if let Ok(own) = wake.body.body_triangles.binary_search(&(triangle as u32)) {
+        let own = own.and_then(|t| {
+            let place = wake.body.body_triangles.binary_search(&(t as u32));
+            place.ok().map(|place| (t, place))
+        });
+        if let Some((triangle, place)) = own {
             for (q, values) in self.body_values.iter_mut().enumerate() {
                 let free = self.of.free_terms[3 * triangle + q];
-                for (value, shape) in values[own].iter_mut().zip(&POINTS[q]) {
+                for (value, shape) in values[place].iter_mut().zip(&POINTS[q]) {
                     *value -= free * shape;
                 }
             }
         }
         for (q, out) in self.slots.iter_mut().enumerate() {
-            out.fill(0.0);
-            wake.near.gather(&self.near_values[q], out);
-            wake.body.gather(&self.body_values[q], out);
+            wake.near.gather(&self.near_values[q], sign, out);
+            wake.body.gather(&self.body_values[q], sign, out);
         }
     }
 
     /// Influence of every streamline at every node of a path.
     fn far_row(&mut self, triangle: usize, q: usize, path: &Path, out: &mut [c64]) {
-        let point = self.of.galerkin.tests[triangle].points[q];
-        self.of
-            .wake
-            .far
-            .influence(point, &path.nodes, &path.weights, &mut self.distances, out);
+        let galerkin = self.of.galerkin;
+        let far = &self.of.wake.far;
+        let point = galerkin.tests[triangle].points[q];
+        far.influence(point, &path.nodes, &path.weights, &mut self.distances, out);
+        if let Some(sign) = galerkin.image.sign() {
+            let point = galerkin.image_tests[triangle].points[q];
+            self.image_far.resize(out.len(), c64::new(0.0, 0.0));
+            far.influence(
+                point,
+                &path.nodes,
+                &path.weights,
+                &mut self.distances,
+                &mut self.image_far,
+            );
+            for (value, image) in out.iter_mut().zip(&self.image_far) {
+                *value += sign * image;
+            }
+        }
     }
 
     /// Influence of every column at s = 0 at one point of the triangle last asked for.
@@ -332,6 +364,32 @@ impl<'a> Evaluator<'a> {
         self.far_row(triangle, q, path, &mut lines);
         for (values, &thread) in lines.chunks_exact(n).zip(&wake.far_threads) {
             let sum: f64 = values.iter().map(|v| v.re).sum();
+            for &(column, weight) in &wake.threads[thread] {
+                out[column] += weight * sum;
+            }
+        }
+        self.lines = lines;
+    }
+
+    /// Influence of every column at s at one point of the triangle last asked for.
+    fn row(&mut self, triangle: usize, q: usize, s: c64, path: &Path, out: &mut [c64]) {
+        let wake = self.of.wake;
+        for (slot, value) in wake.slots.iter().zip(&self.slots[q]) {
+            let decay = (-s * slot.xi).exp();
+            for &(column, weight) in &wake.threads[slot.thread] {
+                out[column] += weight * value * decay;
+            }
+        }
+        let n = path.nodes.len();
+        let mut lines = std::mem::take(&mut self.lines);
+        lines.resize(wake.far.anchors.len() * n, c64::new(0.0, 0.0));
+        self.far_row(triangle, q, path, &mut lines);
+        for (values, &thread) in lines.chunks_exact(n).zip(&wake.far_threads) {
+            let sum: c64 = values
+                .iter()
+                .zip(&path.nodes)
+                .map(|(value, xi)| value * (-s * xi).exp())
+                .sum();
             for &(column, weight) in &wake.threads[thread] {
                 out[column] += weight * sum;
             }

@@ -1,7 +1,7 @@
 //! What several whole-chain tests need.
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use fladder_bem::{Flow, Problem, Silent, Solution, WakeDirection, solve};
+use fladder_bem::{Flow, Problem, Silent, Solution, solve};
 use fladder_mesh::{Frame, SurfaceMode, Topology, TrailingEdge, TriMesh, Vec3, trailing_edge};
 use std::path::PathBuf;
 
@@ -64,15 +64,8 @@ pub(crate) fn solved(
     semichord: f64,
 ) -> Solution {
     let problem = Problem {
-        mesh,
-        trailing_edges: edges,
-        modes,
         flow,
-        wake_direction: WakeDirection::Freestream,
-        body_lines: &[],
-        semichord,
-        moment_point: Vec3::zeros(),
-        symmetry: fladder_bem::Symmetry::None,
+        ..Problem::new(mesh, edges, modes, semichord)
     };
     solve(&problem, &Silent).expect("a sound problem")
 }

@@ -29,6 +29,10 @@ pub struct Structure {
     /// What becomes of modes of the other symmetry than that of a half mesh.
     #[serde(default)]
     pub other_symmetry: OtherSymmetry,
+    /// Whether the steady pressure turns and stretches with the surface in the columns of
+    /// elastic modes.
+    #[serde(default = "yes")]
+    pub pressure_turning: bool,
     /// First and last elastic mode, from 1.
     pub modes: Option<[usize; 2]>,
     /// Structural damping coefficient, one or one per elastic mode.
@@ -42,6 +46,10 @@ pub struct Structure {
     pub rigid_body: Option<RigidBody>,
     /// Matrices given outright.
     pub matrices: Option<Matrices>,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// Units of the structure's files.

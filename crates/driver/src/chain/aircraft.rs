@@ -13,6 +13,8 @@ pub(crate) struct Aircraft {
     pub(crate) surface: Surface,
     pub(crate) structure: StructureData,
     pub(crate) modes: Vec<SurfaceMode>,
+    /// Modes in whose columns the steady pressure turns with the surface: the elastic ones.
+    pub(crate) turning: Vec<bool>,
     /// How the elastic modes came to the surface.
     pub(crate) transfer: Option<TransferReport>,
 }
@@ -45,6 +47,12 @@ impl Aircraft {
             modes.extend(carried.map(|(mode, _)| mode));
         }
         let mut report = None;
+        let rigid = modes.len();
+        let turns = file
+            .case
+            .structure
+            .as_ref()
+            .is_none_or(|given| given.pressure_turning);
         if let Some(model) = &structure.model {
             let given = file
                 .case
@@ -57,6 +65,7 @@ impl Aircraft {
             modes.extend(elastic);
             report = Some(transferred);
         }
+        let elastic = rigid..modes.len();
         for (number, mode) in file.case.modes.analytic.iter().enumerate() {
             let place = format!("modes.analytic.{number}");
             let mode = analytic(mode);
@@ -79,10 +88,14 @@ impl Aircraft {
                 "add [structure] with a result file or mass properties, or [[modes.analytic]]",
             ));
         }
+        let turning = (0..modes.len())
+            .map(|mode| turns && elastic.contains(&mode))
+            .collect();
         Ok(Self {
             surface,
             structure,
             modes,
+            turning,
             transfer: report,
         })
     }

@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 
 /// Word of meaning of stored forces. It changes when the same inputs would
 /// give other numbers, or when the layout of what is stored changes.
-const MEANING: &str = "gaf/1";
+const MEANING: &str = "gaf/2";
 
 /// An entry of the cache.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -64,9 +64,7 @@ pub(crate) struct OwnForces {
 pub(crate) fn problem<'a>(file: &CaseFile, aircraft: &'a Aircraft) -> Problem<'a> {
     let case = &file.case;
     Problem {
-        mesh: &aircraft.surface.mesh,
-        trailing_edges: &aircraft.surface.trailing_edges,
-        modes: &aircraft.modes,
+        turning: &aircraft.turning,
         flow: Flow {
             alpha: case.flow.alpha_deg.to_radians(),
             beta: case.flow.beta_deg.to_radians(),
@@ -76,9 +74,14 @@ pub(crate) fn problem<'a>(file: &CaseFile, aircraft: &'a Aircraft) -> Problem<'a
             WakeDirection::X => fladder_bem::WakeDirection::X,
         },
         body_lines: &aircraft.surface.body_lines,
-        semichord: case.reference.semichord,
         moment_point: Vec3::from(case.reference.moment_point),
         symmetry: aircraft.surface.symmetry,
+        ..Problem::new(
+            &aircraft.surface.mesh,
+            &aircraft.surface.trailing_edges,
+            &aircraft.modes,
+            case.reference.semichord,
+        )
     }
 }
 
@@ -123,7 +126,8 @@ pub(crate) fn key(file: &CaseFile, problem: &Problem<'_>) -> Key {
             .indices("lower", chain.lower.iter().copied())
             .field("closed", &[u8::from(chain.closed)]);
     }
-    for mode in problem.modes {
+    for (index, mode) in problem.modes.iter().enumerate() {
+        let turns = problem.turning.get(index).copied().unwrap_or(false);
         let frame: &[u8] = match mode.frame {
             fladder_mesh::Frame::Inertial => b"inertial",
             fladder_mesh::Frame::Body => b"body",
@@ -135,6 +139,7 @@ pub(crate) fn key(file: &CaseFile, problem: &Problem<'_>) -> Key {
             .collect();
         builder = builder
             .field("frame", frame)
+            .field("turning", &[u8::from(turns)])
             .numbers("mode", shape.into_iter());
     }
     builder.finish()

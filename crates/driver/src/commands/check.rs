@@ -8,9 +8,9 @@ use crate::chain::own_forces;
 use crate::chain::surface::{Surface, Wanted, refusal};
 use crate::failure::Failure;
 use crate::report;
-use fladder_bem::{Flow, Plan, Problem};
+use fladder_bem::{Plan, Problem};
+use fladder_mesh::Symmetry;
 use fladder_mesh::judge::{Code, Fault, Severity};
-use fladder_mesh::{Symmetry, Vec3};
 use serde::Serialize;
 use std::path::Path;
 
@@ -153,17 +153,16 @@ fn look_further(
 fn bare_plan(surface: &Surface) -> Result<Plan, Failure> {
     let (low, high) = surface.mesh.bounds().unwrap_or_default();
     let problem = Problem {
-        mesh: &surface.mesh,
-        trailing_edges: &surface.trailing_edges,
-        modes: &[],
-        flow: Flow::default(),
-        wake_direction: fladder_bem::WakeDirection::default(),
         body_lines: &surface.body_lines,
+        symmetry: surface.symmetry,
         // A mesh by itself has no reference length; the wake's extent is
         // reckoned from half of the surface's length.
-        semichord: 0.5 * (high.x - low.x),
-        moment_point: Vec3::zeros(),
-        symmetry: surface.symmetry,
+        ..Problem::new(
+            &surface.mesh,
+            &surface.trailing_edges,
+            &[],
+            0.5 * (high.x - low.x),
+        )
     };
     fladder_bem::plan(&problem).map_err(|error| {
         Failure::input(

@@ -1,0 +1,198 @@
+//! What every computation starts with: wake, factorised body, steady flow.
+
+use crate::boundary::{ModeFields, onset_sources};
+use crate::cut::CutSurface;
+use crate::dense::{BodyOperator, DenseOperator};
+use crate::error::BemError;
+use crate::galerkin::Galerkin;
+use crate::image::Image;
+use crate::onset::OnsetBasis;
+use crate::progress::Progress;
+use crate::solve::{Problem, check, lay_out};
+use crate::steady::UnitOnsets;
+use crate::transfer::solve_complex;
+use crate::wake::Wake;
+use crate::wake_influence::WakeInfluence;
+use faer::{Mat, c64};
+
+/// A problem as far as it does not depend on s; `O` is the factorised operator, or
+/// nothing once it is not needed any more.
+pub(crate) struct Prepared<O> {
+    pub(crate) surface: CutSurface,
+    pub(crate) wake: Wake,
+    /// K: +1 at upper, −1 at lower vertices.
+    pub(crate) selector: Mat<f64>,
+    pub(crate) fields: ModeFields,
+    pub(crate) body: Body<O>,
+    pub(crate) onsets: UnitOnsets,
+}
+
+/// The body's equations with the symmetry of the motion.
+pub(crate) struct Body<O> {
+    pub(crate) galerkin: Galerkin,
+    pub(crate) operator: O,
+    pub(crate) free_terms: Vec<f64>,
+    /// Potentials of the sources, without wake.
+    pub(crate) potentials: Mat<f64>,
+}
+
+impl Prepared<DenseOperator> {
+    /// Lays out, factorises and solves the steady flow.
+    pub(crate) fn new(
+        problem: &Problem<'_>,
+        progress: &dyn Progress,
+    ) -> Result<Self, BemError> {
+        check(problem)?;
+        let (surface, wake) = lay_out(problem)?;
+        let selector = selector(&surface);
+        let symmetry = problem.symmetry;
+        let (flow, motion) = (Image::of_flow(symmetry), Image::of_motion(symmetry));
+        let galerkin = Galerkin::new(&surface, motion);
+        let fields = ModeFields::new(
+            &galerkin,
+            &surface.source,
+            problem.modes,
+            problem.turning,
+            OnsetBasis::of(problem),
+        );
+        let sources = fields.sources(&galerkin);
+        let (body, onsets) = if flow == motion {
+            let all = concatenate(&[&sources, &onset_sources(&galerkin)]);
+            let body = Body::factorise(galerkin, &all, progress)?;
+            let onsets = body.steady_onsets(&wake, &selector, sources.ncols(), progress)?;
+            (body, onsets)
+        } else {
+            let even = Galerkin::new(&surface, flow);
+            let onset = onset_sources(&even);
+            let steady = Body::factorise(even, &onset, progress)?;
+            let onsets = steady.steady_onsets(&wake, &selector, 0, progress)?;
+            drop(steady);
+            (Body::factorise(galerkin, &sources, progress)?, onsets)
+        };
+        Ok(Self {
+            surface,
+            wake,
+            selector,
+            fields,
+            body,
+            onsets,
+        })
+    }
+
+    /// Frees the operator's memory.
+    pub(crate) fn without_operator(self) -> Prepared<()> {
+        Prepared {
+            surface: self.surface,
+            wake: self.wake,
+            selector: self.selector,
+            fields: self.fields,
+            body: Body {
+                galerkin: self.body.galerkin,
+                operator: (),
+                free_terms: self.body.free_terms,
+                potentials: self.body.potentials,
+            },
+            onsets: self.onsets,
+        }
+    }
+}
+
+impl<O> Prepared<O> {
+    pub(crate) fn influence(&self) -> WakeInfluence<'_> {
+        self.body.influence(&self.wake)
+    }
+}
+
+impl<O> Body<O> {
+    fn influence<'a>(&'a self, wake: &'a Wake) -> WakeInfluence<'a> {
+        WakeInfluence {
+            galerkin: &self.galerkin,
+            wake,
+            free_terms: &self.free_terms,
+        }
+    }
+}
+
+impl Body<DenseOperator> {
+    fn factorise(
+        galerkin: Galerkin,
+        sources: &Mat<f64>,
+        progress: &dyn Progress,
+    ) -> Result<Self, BemError> {
+        let assembly = galerkin.assemble(sources.as_ref(), progress)?;
+        let stage = "factorising";
+        progress.stage(stage, 1);
+        let operator = DenseOperator::new(assembly.rows, galerkin.n_vertices)?;
+        progress.advance(1);
+        if progress.cancelled() {
+            return Err(BemError::Interrupted { stage });
+        }
+        let mut potentials = assembly.right_hand_sides;
+        operator.solve(&mut potentials);
+        Ok(Self {
+            galerkin,
+            operator,
+            free_terms: assembly.free_terms,
+            potentials,
+        })
+    }
+
+    /// Steady potentials and jumps for the three unit onsets, whose potentials without
+    /// wake are the three from `first` on.
+    fn steady_onsets(
+        &self,
+        wake: &Wake,
+        selector: &Mat<f64>,
+        first: usize,
+        progress: &dyn Progress,
+    ) -> Result<UnitOnsets, BemError> {
+        let n = selector.ncols();
+        let mut phi = self.potentials.subcols(first, 3).to_owned();
+        if self.galerkin.image.sign().is_some() {
+            // A stream along y is antisymmetric.
+            phi.col_mut(1).fill(0.0);
+        }
+        let mut jumps = Mat::zeros(n, 3);
+        if n > 0 {
+            let mut response = self.influence(wake).steady(n, progress)?;
+            self.operator.solve(&mut response);
+            let h = selector.transpose() * &response;
+            let system = Mat::from_fn(n, n, |i, j| {
+                let unit = if i == j { 1.0 } else { 0.0 };
+                c64::new(unit - h[(i, j)], 0.0)
+            });
+            let right = selector.transpose() * &phi;
+            let right = Mat::from_fn(n, 3, |i, j| c64::new(right[(i, j)], 0.0));
+            let solved = solve_complex(system, right).ok_or(BemError::Singular {
+                pivot: 0,
+                size: n,
+                value: 0.0,
+            })?;
+            jumps = Mat::from_fn(n, 3, |i, j| solved[(i, j)].re);
+            phi += &response * &jumps;
+        }
+        Ok(UnitOnsets::new(&self.galerkin, wake, &phi, jumps))
+    }
+}
+
+fn selector(surface: &CutSurface) -> Mat<f64> {
+    let mut k = Mat::zeros(surface.vertices.len(), surface.columns.len());
+    for (j, column) in surface.columns.iter().enumerate() {
+        k[(column.upper as usize, j)] = 1.0;
+        k[(column.lower as usize, j)] = -1.0;
+    }
+    k
+}
+
+/// Matrices side by side.
+pub(crate) fn concatenate(parts: &[&Mat<f64>]) -> Mat<f64> {
+    let rows = parts[0].nrows();
+    let columns = parts.iter().map(|p| p.ncols()).sum();
+    let mut all = Mat::zeros(rows, columns);
+    let mut from = 0;
+    for part in parts {
+        all.subcols_mut(from, part.ncols()).copy_from(part);
+        from += part.ncols();
+    }
+    all
+}
