@@ -219,7 +219,8 @@ fn half_mesh_and_half_structure_flutter_at_the_speed_of_the_whole() {
     }
 }
 
-/// Speed, g and k of all refined roots that are not at rest.
+/// Speed, g and k of all refined roots that are not at rest, without those on the
+/// branch cut's shores far from the origin: which of them are found is not claimed.
 fn roots(found: &Value) -> Vec<[f64; 3]> {
     let mut roots = Vec::new();
     for branch in found["methods"]["polished"]["branches"].as_array().unwrap() {
@@ -228,7 +229,7 @@ fn roots(found: &Value) -> Vec<[f64; 3]> {
             roots.push([value("speed", i), value("g", i), value("k", i)]);
         }
     }
-    roots.retain(|[_, g, k]| g.hypot(*k) > 1e-5);
+    roots.retain(|[_, g, k]| g.hypot(*k) > 1e-5 && (*g > -0.1 || *k > 0.02));
     roots
 }
 
@@ -274,7 +275,7 @@ fn free_halves_have_together_the_roots_of_the_free_whole() {
                 .map(|other| (other[1] - g).hypot(other[2] - k))
                 .fold(f64::INFINITY, f64::min);
             assert!(
-                nearest < 1e-7,
+                nearest < 1e-9,
                 "{speed} m/s: {g} {k:+}i is {nearest:e} from any other"
             );
             worst = worst.max(nearest);
@@ -312,7 +313,7 @@ fn from_a_file(place: &Place, computed: &Value) {
 
 /// Q by name of force and motion, at one point.
 fn q(place: &Place, case: &str, at: &[&str]) -> (Vec<String>, Vec<Vec<Vec<[f64; 2]>>>) {
-    let (case_file, json) = (format!("./{case}.toml"), format!("{case}.gaf.json"));
+    let (case_file, json) = (format!("./{case}.toml"), format!("./{case}.gaf.json"));
     let mut arguments = vec!["gaf", &case_file, "-q", "--json", &json];
     for point in at {
         arguments.extend(["--at", point]);
