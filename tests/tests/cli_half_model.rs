@@ -121,16 +121,16 @@ refine = "exact"
 "#;
 
 /// Mass and inertia of the whole wing.
-const BODY: &str = r#"[structure.rigid_body]
+const BODY: &str = "[structure.rigid_body]
 mass = 2.4
 cg = [0.1, 0.0, 0.01]
 inertia = { xx = 0.8, yy = 0.02, zz = 0.81, xz = 0.004 }
-"#;
+";
 
-const FLIGHT: &str = r#"[flight]
+const FLIGHT: &str = "[flight]
 parasite_drag_area = 0.01
 induced_drag_factor = 0.1
-"#;
+";
 
 /// Meshes, structures and cases of the whole wing and of its halves.
 fn place(more: &str) -> Place {
@@ -311,8 +311,11 @@ fn from_a_file(place: &Place, computed: &Value) {
     assert_eq!(branches(&given), branches(computed));
 }
 
-/// Q by name of force and motion, at one point.
-fn q(place: &Place, case: &str, at: &[&str]) -> (Vec<String>, Vec<Vec<Vec<[f64; 2]>>>) {
+/// Real and imaginary parts of a matrix.
+type Matrix = Vec<Vec<[f64; 2]>>;
+
+/// Names of the modes, and Q at every point.
+fn q(place: &Place, case: &str, at: &[&str]) -> (Vec<String>, Vec<Matrix>) {
     let (case_file, json) = (format!("./{case}.toml"), format!("./{case}.gaf.json"));
     let mut arguments = vec!["gaf", &case_file, "-q", "--json", &json];
     for point in at {
@@ -326,6 +329,21 @@ fn q(place: &Place, case: &str, at: &[&str]) -> (Vec<String>, Vec<Vec<Vec<[f64; 
         serde_json::from_value(found["modes"].clone()).unwrap(),
         points.iter().map(q).collect(),
     )
+}
+
+/// Largest difference of entries over the largest entry of the whole; `places` are
+/// the modes of the half among those of the whole.
+fn worst_difference(whole: &[Vec<[f64; 2]>], half: &[Vec<[f64; 2]>], places: &[usize]) -> f64 {
+    let size = |entry: &[f64; 2]| entry[0].hypot(entry[1]);
+    let scale = whole.iter().flatten().map(size).fold(0.0, f64::max);
+    let mut worst: f64 = 0.0;
+    for (row, &i) in half.iter().zip(places) {
+        for (entry, &j) in row.iter().zip(places) {
+            let difference = [0, 1].map(|part| entry[part] - whole[i][j][part]);
+            worst = worst.max(size(&difference) / scale);
+        }
+    }
+    worst
 }
 
 /// Rigid, elastic and analytic modes of each kind.
@@ -351,10 +369,6 @@ fn q_of_a_half_model_is_that_of_the_whole() {
         place.write(&format!("{case}.toml"), text);
     }
     let (names, whole) = q(&place, "whole", &points);
-    let largest = |q: &[Vec<[f64; 2]>]| {
-        let size = |entry: &[f64; 2]| entry[0].hypot(entry[1]);
-        q.iter().flatten().map(size).fold(0.0, f64::max)
-    };
     let all = modes();
     for (case, is_symmetric) in [("y", true), ("-y", false)] {
         let (own_names, half) = q(&place, case, &points);
@@ -374,13 +388,7 @@ fn q_of_a_half_model_is_that_of_the_whole() {
             })
             .collect();
         for (point, (whole, half)) in points.iter().zip(whole.iter().zip(&half)) {
-            let (mut worst, scale) = (0.0_f64, largest(whole));
-            for (i, row) in half.iter().enumerate() {
-                for (j, [re, im]) in row.iter().enumerate() {
-                    let [a, b] = whole[place_in_whole[i]][place_in_whole[j]];
-                    worst = worst.max((a - re).hypot(b - im) / scale);
-                }
-            }
+            let worst = worst_difference(whole, half, &place_in_whole);
             println!("{case} at {point}: half against whole {worst:.1e} of max |Q|");
             assert!(worst < 1e-9, "{case} at {point}: {worst:e}");
         }
@@ -559,6 +567,60 @@ fn half_an_aircraft_is_moved_by_its_whole_structure() {
         elastic += modes.len() - 3;
     }
     assert_eq!(elastic, 20);
+}
+
+#[test]
+fn half_an_aircraft_without_a_wake_has_the_forces_of_the_whole() {
+    aircraft_against_halves("none");
+}
+
+/// Where the lines of port and starboard meet at the tail, the sheet of a half ends
+/// in the plane with the mean of its jump and that of its image.
+#[test]
+#[ignore = "the body line of a half model does not reach the plane yet"]
+fn half_an_aircraft_has_the_forces_of_the_whole() {
+    aircraft_against_halves("required");
+}
+
+/// The same aircraft, rigid.
+fn aircraft_against_halves(wake: &str) {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mesh = root.join("meshes/scaneagle_3k.msh");
+    let whole = fladder_mesh::read::load(&mesh, 1.0).unwrap().mesh;
+    let place = Place::new();
+    let case = |mesh: &str, symmetry: &str, lines: &str| {
+        format!(
+            "[reference]\nsemichord = 0.115\n[flow]\nalpha_deg = 2.914\n[mesh]\n\
+             file = \"{mesh}\"\nsymmetry = \"{symmetry}\"\n[wake]\nmode = \"{wake}\"\n\
+             body_lines = {lines}\n[gaf]\nk = [0.0, 0.1]\n[structure.rigid_body]\n\
+             mass = 17.86\ncg = [0.6615, 0.0, 0.001]\n\
+             inertia = {{ xx = 0.976, yy = 1.329, zz = 2.190, xz = 0.00715 }}\n"
+        )
+    };
+    let mut file = Vec::new();
+    fladder_mesh::write::msh41(&mut file, &starboard(&whole)).unwrap();
+    let both = "[\"bodywake_r\", \"bodywake_l\"]";
+    let one = "[\"bodywake_r\"]";
+    place
+        .write("half.msh", file)
+        .write(
+            "whole.toml",
+            case(&mesh.display().to_string(), "none", both),
+        )
+        .write("y.toml", case("half.msh", "y", one))
+        .write("-y.toml", case("half.msh", "-y", one));
+    let points = ["0,0.3", "-0.05,0.2"];
+    let (names, of_whole) = q(&place, "whole", &points);
+    let numbers = |name: &String| names.iter().position(|other| other == name).unwrap();
+    for case in ["y", "-y"] {
+        let (own_names, of_half) = q(&place, case, &points);
+        let places: Vec<usize> = own_names.iter().map(numbers).collect();
+        for (point, (whole, half)) in points.iter().zip(of_whole.iter().zip(&of_half)) {
+            let worst = worst_difference(whole, half, &places);
+            println!("{case} at {point}: half against whole {worst:.1e} of max |Q|");
+            assert!(worst < 1e-9, "{case} at {point}: {worst:e}");
+        }
+    }
 }
 
 /// What belongs to the groups of the starboard side.

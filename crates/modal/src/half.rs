@@ -227,18 +227,22 @@ impl ModalResult {
             .iter()
             .map(|element: &Element| element.nodes.iter().any(|node| y(node) > near))
             .collect();
-        let mut number = vec![None; is_kept.len()];
-        let mut next = 0;
-        for (number, _) in number.iter_mut().zip(&is_kept).filter(|(_, kept)| **kept) {
-            *number = Some(next);
-            next += 1;
-        }
+        // New number of every kept element.
+        let number: Vec<u32> = is_kept
+            .iter()
+            .scan(0, |next, kept| {
+                let own = *next;
+                *next += u32::from(*kept);
+                Some(own)
+            })
+            .collect();
         let mut kept = is_kept.iter();
         self.elements.retain(|_| kept.next() == Some(&true));
         for NamedSet { members, .. } in &mut self.element_sets {
             *members = members
                 .iter()
-                .filter_map(|element| number[*element as usize])
+                .filter(|element| is_kept[**element as usize])
+                .map(|element| number[*element as usize])
                 .collect();
         }
         self
