@@ -93,7 +93,7 @@ fn values_without_meaning_are_refused_with_their_key() {
         ("modes.analytic.0.name=pitch", "named `pitch`"),
         ("modes.analytic.1.rotation.axis=[0, 0, 0]", "no length"),
         ("flight.trim=level", "rigid_body"),
-        ("mesh.symmetry=y", "half models"),
+        ("mesh.symmetry=y", "both sides of y = 0"),
         ("structure.damping=0.02", "structure.damping"),
         ("flow.alpha_deg=steep", "expected a number"),
         ("stability.matched=true", "stability.matched"),

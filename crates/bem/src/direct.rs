@@ -1,6 +1,7 @@
 //! The whole complex system at one s, solved without reduction: oracle of the transfer
 //! model. Everything of the wake is summed at every test point before it is tested.
 
+use crate::Symmetry;
 use crate::boundary::{ModeFields, onset_sources};
 use crate::galerkin::Galerkin;
 use crate::image::Image;
@@ -9,7 +10,7 @@ use crate::onset::OnsetBasis;
 use crate::pressure::Functionals;
 use crate::progress::Silent;
 use crate::shape_change::ShapeChange;
-use crate::solve::{Flow, Problem, Symmetry, WakeDirection, lay_out, solve};
+use crate::solve::{Flow, Problem, WakeDirection, lay_out, solve};
 use crate::steady::UnitOnsets;
 use crate::surface_flow::surface_flow;
 use crate::transfer::solve_complex;

@@ -199,7 +199,7 @@ impl Galerkin {
                 *free -= row.iter().sum::<f64>();
             }
             if let Some(sign) = self.image.sign() {
-                let other = seen.from_image(&self.image_tests[t]);
+                let other = seen.seen_from_image(&self.image_tests[t]);
                 for (s, value) in s.as_flattened_mut().iter_mut().zip(other.sources) {
                     *s += sign * value;
                 }
@@ -336,7 +336,7 @@ impl<'a> Seen<'a> {
     }
 
     /// As [`Self::from`], into own memory.
-    fn from_image(&mut self, test: &TestTriangle) -> ImageSeen<'_> {
+    fn seen_from_image(&mut self, test: &TestTriangle) -> ImageSeen<'_> {
         let mut rows = std::mem::take(&mut self.image_rows);
         let mut sources = std::mem::take(&mut self.image_sources);
         rows.fill(0.0);

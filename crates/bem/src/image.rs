@@ -9,7 +9,7 @@
 //! antisymmetric potentials, hence gives the same forces. The test functions on the plane
 //! have both halves equal (symmetric) or a potential that is zero (antisymmetric).
 
-use fladder_mesh::Vec3;
+use fladder_mesh::{Symmetry, Vec3};
 
 /// Vertices closer to the plane than this, in metres, are on it; meshes put them there.
 const PLANE: f64 = 1e-12;
@@ -26,6 +26,23 @@ pub(crate) enum Image {
 }
 
 impl Image {
+    /// What the steady flow does, which is symmetric whatever the motion.
+    pub(crate) fn of_flow(symmetry: Symmetry) -> Self {
+        match symmetry {
+            Symmetry::None => Self::None,
+            Symmetry::Symmetric | Symmetry::Antisymmetric => Self::Even,
+        }
+    }
+
+    /// What the motion does.
+    pub(crate) fn of_motion(symmetry: Symmetry) -> Self {
+        match symmetry {
+            Symmetry::None => Self::None,
+            Symmetry::Symmetric => Self::Even,
+            Symmetry::Antisymmetric => Self::Odd,
+        }
+    }
+
     /// Sign of the image's potential; none for whole surfaces.
     pub(crate) fn sign(self) -> Option<f64> {
         match self {

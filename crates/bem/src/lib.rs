@@ -67,10 +67,11 @@ mod wake_influence;
 mod wake_sheet;
 
 pub use error::{BemError, LaplaceError};
+pub use fladder_mesh::Symmetry;
 pub use guards::guards;
 pub use progress::{Progress, Silent};
 pub use shape_change::ShapeChange;
-pub use solve::{Flow, Plan, Problem, Sizes, Solution, Symmetry, WakeDirection, plan, solve};
+pub use solve::{Flow, Plan, Problem, Sizes, Solution, WakeDirection, plan, solve};
 pub use steady::{Loads, OnsetForm, SpanwiseJump, SteadyState};
 pub use surface_flow::{SurfaceFlow, UnsteadyPressure, surface_flow};
 pub use transfer::TransferModel;

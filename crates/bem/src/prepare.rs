@@ -5,6 +5,7 @@ use crate::cut::CutSurface;
 use crate::dense::{BodyOperator, DenseOperator};
 use crate::error::BemError;
 use crate::galerkin::Galerkin;
+use crate::image::Image;
 use crate::onset::OnsetBasis;
 use crate::progress::Progress;
 use crate::shape_change::{ShapeChange, check_symmetry, correct_potentials};
@@ -46,7 +47,8 @@ impl Prepared<DenseOperator> {
         check_symmetry(problem)?;
         let (surface, wake) = lay_out(problem)?;
         let selector = selector(&surface);
-        let (flow, motion) = (problem.symmetry.of_flow(), problem.symmetry.of_motion());
+        let symmetry = problem.symmetry;
+        let (flow, motion) = (Image::of_flow(symmetry), Image::of_motion(symmetry));
         let galerkin = Galerkin::new(&surface, motion);
         let fields = ModeFields::new(
             &galerkin,

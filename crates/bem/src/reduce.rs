@@ -4,11 +4,12 @@ use crate::blocks::{Block, FarBlocks, NearBlocks};
 use crate::boundary::ModeFields;
 use crate::contour::Path;
 use crate::pressure::Functionals;
-use crate::solve::{Problem, Symmetry};
+use crate::solve::Problem;
 use crate::transfer::TransferModel;
 use crate::wake::Wake;
 use crate::wake_influence::WakeBlocks;
 use faer::{Mat, c64};
+use fladder_mesh::Symmetry;
 
 /// Pressure coefficient against the pressure in units of ρU²: c_p = 2p.
 const COEFFICIENT: f64 = 2.0;

@@ -20,6 +20,7 @@ use crate::boundary::{ModeFields, onset_sources};
 use crate::dense::BodyOperator;
 use crate::error::BemError;
 use crate::galerkin::Galerkin;
+use crate::image::Image;
 use crate::prepare::Prepared;
 use crate::progress::{Progress, Silent};
 use crate::solve::{Problem, lay_out};
@@ -126,7 +127,7 @@ fn residual(
         ..*problem
     };
     let (surface, wake) = lay_out(&moved)?;
-    let galerkin = Galerkin::new(&surface, problem.symmetry.of_flow());
+    let galerkin = Galerkin::new(&surface, Image::of_flow(problem.symmetry));
     let sources = onset_sources(&galerkin) * &steady.onsets;
     let assembly = galerkin.assemble(sources.as_ref(), &Silent)?;
     let n = galerkin.n_vertices;
@@ -168,7 +169,7 @@ pub(crate) fn metric_change(
 
 /// The body whose potentials are corrected must have the flow's symmetry.
 pub(crate) fn check_symmetry(problem: &Problem<'_>) -> Result<(), BemError> {
-    let same = problem.symmetry.of_flow() == problem.symmetry.of_motion();
+    let same = Image::of_flow(problem.symmetry) == Image::of_motion(problem.symmetry);
     if problem.shape_change == ShapeChange::Exact && !same {
         return Err(BemError::ShapeChangeOnHalf);
     }

@@ -3,7 +3,6 @@
 use crate::cut::CutSurface;
 use crate::dense::BodyOperator;
 use crate::error::BemError;
-use crate::image::Image;
 use crate::onset::OnsetBasis;
 use crate::prepare::{Prepared, concatenate};
 use crate::pressure::Functionals;
@@ -15,7 +14,7 @@ use crate::transfer::TransferModel;
 use crate::wake::{Wake, cut_and_wake};
 use crate::wake_sheet::WakeSheet;
 use faer::Mat;
-use fladder_mesh::{SurfaceMode, TrailingEdge, TriMesh, Vec3};
+use fladder_mesh::{SurfaceMode, Symmetry, TrailingEdge, TriMesh, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// Incidence of the stream.
@@ -45,38 +44,6 @@ pub enum WakeDirection {
     Freestream,
     /// Along the mesh axis x, whatever the incidence.
     X,
-}
-
-/// How much of the aircraft the mesh shows, and how it moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Symmetry {
-    /// The whole surface.
-    #[default]
-    None,
-    /// The half on y ≥ 0, open at y = 0; motion symmetric.
-    Symmetric,
-    /// The half on y ≥ 0, open at y = 0; motion antisymmetric about a symmetric flow.
-    Antisymmetric,
-}
-
-impl Symmetry {
-    /// What the steady flow does under reflection.
-    pub(crate) fn of_flow(self) -> Image {
-        match self {
-            Self::None => Image::None,
-            Self::Symmetric | Self::Antisymmetric => Image::Even,
-        }
-    }
-
-    /// What the motion does under reflection.
-    pub(crate) fn of_motion(self) -> Image {
-        match self {
-            Self::None => Image::None,
-            Self::Symmetric => Image::Even,
-            Self::Antisymmetric => Image::Odd,
-        }
-    }
 }
 
 /// A boundary-element problem at M = 0.

@@ -8,11 +8,10 @@ use crate::boundary::ModeFields;
 use crate::cut::CutSurface;
 use crate::galerkin::Galerkin;
 use crate::image::{mirrored, on_plane};
-use crate::solve::Symmetry;
 use crate::trefftz::induced_drag;
 use crate::wake::Wake;
 use faer::Mat;
-use fladder_mesh::Vec3;
+use fladder_mesh::{Symmetry, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// Velocity on every triangle for onsets along x, y and z, and the wake jumps.

@@ -4,6 +4,7 @@ pub mod judge;
 pub mod read;
 pub mod shapes;
 mod surface;
+mod symmetry;
 mod topology;
 pub mod trailing_edge;
 pub mod vtu;
@@ -11,5 +12,6 @@ pub mod weld;
 pub mod write;
 
 pub use surface::{CurveGroup, Frame, SurfaceGroup, SurfaceMode, TriMesh, Vec3};
+pub use symmetry::{Symmetry, mirrored};
 pub use topology::Topology;
 pub use trailing_edge::TrailingEdge;

@@ -12,8 +12,13 @@
 
 use serde::{Deserialize, Serialize};
 
+mod plane;
+
+pub use plane::{in_plane_by_shape, in_plane_from_groups};
+
 use crate::topology::runs_along;
 use crate::{Topology, TriMesh, Vec3};
+use plane::is_rim;
 
 /// When an edge counts as trailing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -142,6 +147,28 @@ pub fn find_from_groups<S: AsRef<str>>(
     topology: &Topology,
     names: &[S],
 ) -> Result<Vec<TrailingEdge>, TrailingEdgeError> {
+    from_groups(mesh, topology, names, false)
+}
+
+/// As [`find_from_groups`], on a half model: edges in its symmetry plane, which
+/// have one side there, are passed over.
+///
+/// # Errors
+/// As [`find_from_groups`].
+pub fn find_from_groups_of_half<S: AsRef<str>>(
+    mesh: &TriMesh,
+    topology: &Topology,
+    names: &[S],
+) -> Result<Vec<TrailingEdge>, TrailingEdgeError> {
+    from_groups(mesh, topology, names, true)
+}
+
+fn from_groups<S: AsRef<str>>(
+    mesh: &TriMesh,
+    topology: &Topology,
+    names: &[S],
+    is_half: bool,
+) -> Result<Vec<TrailingEdge>, TrailingEdgeError> {
     let mut trailing = Vec::new();
     for name in names {
         let name = name.as_ref();
@@ -160,6 +187,9 @@ pub fn find_from_groups<S: AsRef<str>>(
                     edge,
                 }
             })?;
+            if is_half && is_rim(mesh, topology, index) {
+                continue;
+            }
             if sides(mesh, topology, index).is_none() {
                 let triangles = topology.edge_triangles(index).len();
                 return Err(TrailingEdgeError::NotTwoSided {

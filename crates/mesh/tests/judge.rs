@@ -456,9 +456,13 @@ fn a_half_model_is_open_only_without_its_symmetry_plane() {
     };
     let judgement = judge(half.clone(), symmetric);
     assert_eq!(judgement.faults, []);
-    assert!((2.0 * judgement.volume - whole.volume).abs() < 1e-12 * whole.volume);
-    assert!((2.0 * judgement.area - whole.area).abs() < 1e-12 * whole.area);
-    assert_eq!(judgement.bodies[0].genus, Some(0));
+    assert!((judgement.volume - whole.volume).abs() < 1e-12 * whole.volume);
+    assert!((judgement.area - whole.area).abs() < 1e-12 * whole.area);
+    assert!(judgement.bodies[0].is_cut);
+    assert_eq!(
+        (judgement.bodies[0].genus, judgement.whole_bodies),
+        (Some(0), 1)
+    );
     // Shifted across the plane it crosses its image, and is open as well.
     let across = judge(moved(&half, 1.0, [0.0, -0.1, 0.0]), symmetric);
     assert_eq!(codes(&across), [Code::OpenEdge, Code::SelfCrossing]);
@@ -467,6 +471,102 @@ fn a_half_model_is_open_only_without_its_symmetry_plane() {
         t.swap(1, 2);
     }
     assert_eq!(codes(&judge(inverted, symmetric)), [Code::InsideOut]);
+}
+
+fn half_wing() -> TriMesh {
+    NacaWing {
+        extent: Extent::Half,
+        ..NacaWing::default()
+    }
+    .structured()
+    .unwrap()
+}
+
+fn judged_as_half(mesh: &TriMesh) -> Judgement {
+    let settings = Settings {
+        symmetry_plane: true,
+        ..Settings::default()
+    };
+    let judgement = judge(mesh.clone(), settings);
+    for fault in &judgement.faults {
+        println!("{}: {fault}", fault.code);
+    }
+    judgement
+}
+
+#[test]
+fn a_half_model_on_both_sides_or_on_the_wrong_one_is_no_half() {
+    let whole = NacaWing::default().structured().unwrap();
+    let judgement = judged_as_half(&whole);
+    assert_eq!(codes(&judgement), [Code::NotAHalf]);
+    assert!(judgement.has_errors());
+    assert_eq!(judgement.volume, judged(&whole).volume);
+    let mut port = half_wing();
+    for p in &mut port.vertices {
+        p.y = -p.y;
+    }
+    for t in &mut port.triangles {
+        t.swap(1, 2);
+    }
+    let judgement = judged_as_half(&port);
+    assert_eq!(codes(&judgement), [Code::NotAHalf]);
+    assert!(judgement.faults[0].remedy.contains("swap two corners"));
+}
+
+/// The rim of a half written in single precision lies beside the plane by
+/// round-off, and is moved into it; what lies farther away is open.
+#[test]
+fn the_rim_of_a_half_model_is_moved_into_the_plane() {
+    let exact = half_wing();
+    let mut shifted = exact.clone();
+    let is_rim = |p: &Vec3| p.y == 0.0;
+    let n_rim = exact.vertices.iter().filter(|p| is_rim(p)).count();
+    for (k, p) in shifted
+        .vertices
+        .iter_mut()
+        .enumerate()
+        .filter(|(_, p)| is_rim(p))
+    {
+        p.y = if k % 2 == 0 { 2e-6 } else { -2e-6 };
+    }
+    let judgement = judged_as_half(&shifted);
+    assert_eq!(codes(&judgement), [Code::OffPlane]);
+    let fault = &judgement.faults[0];
+    assert_eq!(
+        (fault.severity, fault.elements.len(), fault.measured),
+        (Severity::Repaired, n_rim, Some(2e-6))
+    );
+    assert_eq!(judgement.mesh.vertices, exact.vertices);
+    let beside = judged_as_half(&moved(&exact, 1.0, [0.0, 1e-3, 0.0]));
+    assert_eq!(codes(&beside), [Code::OpenEdge]);
+    assert_eq!(beside.faults[0].measured, Some(1e-3));
+}
+
+/// A wall in the plane stands twice there, a body beside the plane has an
+/// image of its own, and one that touches the plane touches its image.
+#[test]
+fn walls_in_the_plane_and_bodies_beside_it_are_said() {
+    let box_on_plane = tetrahedron();
+    let walled = judged_as_half(&box_on_plane);
+    assert_eq!(codes(&walled), [Code::SelfCrossing]);
+    assert!(walled.faults[0].remedy.contains("without a wall"));
+    let touching = judged_as_half(&moved(&icosphere(4), 1.0, [0.0, 1.0, 0.0]));
+    let lowest = touching
+        .mesh
+        .vertices
+        .iter()
+        .map(|p| p.y)
+        .fold(1.0, f64::min);
+    assert_eq!(lowest, 0.0);
+    assert_eq!(codes(&touching)[0], Code::BowTie);
+    let ball = moved(&icosphere(4), 0.5, [0.0, 2.0, 0.0]);
+    let apart = judged_as_half(&ball);
+    assert_eq!(codes(&apart), [Code::NotAHalf]);
+    assert_eq!(apart.faults[0].severity, Severity::Warning);
+    assert_eq!((apart.bodies.len(), apart.whole_bodies), (1, 2));
+    let both = judged_as_half(&union(&half_wing(), &moved(&ball, 1.0, [5.0, 0.0, 0.0])));
+    assert_eq!(both.faults, []);
+    assert_eq!((both.bodies.len(), both.whole_bodies), (2, 3));
 }
 
 #[test]
@@ -506,7 +606,7 @@ fn a_surface_without_a_trailing_edge_says_how_sharp_it_is() {
 
 #[test]
 fn names_and_severities_are_those_of_the_check_file() {
-    let repaired = ["duplicate_vertices", "flipped", "inside_out"];
+    let repaired = ["duplicate_vertices", "off_plane", "flipped", "inside_out"];
     let warned = ["needle", "nested_bodies", "no_trailing_edge", "units"];
     for code in [
         Code::NotFinite,
@@ -514,6 +614,8 @@ fn names_and_severities_are_those_of_the_check_file() {
         Code::ZeroArea,
         Code::Needle,
         Code::DuplicateVertices,
+        Code::NotAHalf,
+        Code::OffPlane,
         Code::OpenEdge,
         Code::NonManifoldEdge,
         Code::BowTie,
@@ -522,6 +624,7 @@ fn names_and_severities_are_those_of_the_check_file() {
         Code::SelfCrossing,
         Code::NestedBodies,
         Code::NoTrailingEdge,
+        Code::PlaneTrailingEdge,
         Code::Units,
         Code::TooLarge,
     ] {

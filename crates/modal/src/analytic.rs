@@ -1,6 +1,6 @@
 //! Displacement fields in closed form: translation, rotation, polynomial.
 
-use fladder_mesh::{Frame, SurfaceMode, Vec3};
+use fladder_mesh::{Frame, SurfaceMode, Symmetry, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// A component of a displacement.
@@ -110,6 +110,30 @@ impl AnalyticMode {
         })
     }
 
+    /// The kind of motion about y = 0 that the formula is, told from its
+    /// coefficients; `None` where it is a mixture.
+    ///
+    /// A rotation is symmetric about an axis along y, antisymmetric about an
+    /// axis in the plane. A polynomial term is even in y, or odd with `odd_y`.
+    pub fn symmetry(&self) -> Symmetry {
+        let [even, odd] = match &self.motion {
+            Motion::Translation(v) => [v.x.hypot(v.z), v.y.abs()],
+            Motion::Rotation { axis, point } => {
+                let across = axis.x.hypot(axis.z);
+                [axis.y.abs() + across * point.y.abs(), across]
+            }
+            Motion::Polynomial(terms) => parts(terms),
+        };
+        let whole = even.hypot(odd);
+        if odd <= KIND_TOLERANCE * whole {
+            Symmetry::Symmetric
+        } else if even <= KIND_TOLERANCE * whole {
+            Symmetry::Antisymmetric
+        } else {
+            Symmetry::None
+        }
+    }
+
     fn unit(&self, axis: Vec3) -> Result<Vec3, AnalyticError> {
         let length = axis.norm();
         if length > 0.0 && length.is_finite() {
@@ -120,6 +144,20 @@ impl AnalyticMode {
             length,
         })
     }
+}
+
+/// Rounding of coefficients that were meant to be zero.
+const KIND_TOLERANCE: f64 = 1e-9;
+
+/// Sizes of the symmetric and the antisymmetric terms: symmetric motion has
+/// u_x and u_z even in y, and u_y odd.
+fn parts(terms: &[PolynomialTerm]) -> [f64; 2] {
+    let mut sizes = [0.0; 2];
+    for term in terms {
+        let is_across = term.component == Component::Y;
+        sizes[usize::from(is_across != term.odd_y)] += term.coefficient.abs();
+    }
+    sizes
 }
 
 fn polynomial(terms: &[PolynomialTerm], point: &Vec3) -> Vec3 {

@@ -22,6 +22,7 @@ mod error;
 mod face;
 mod format;
 mod frd;
+mod half;
 mod inp;
 mod model;
 mod neutral;
@@ -31,6 +32,7 @@ mod read;
 mod result;
 mod rigid;
 mod rigid_fit;
+mod rigid_half;
 mod skin;
 mod summary;
 mod text;
@@ -43,6 +45,7 @@ pub use components::Mapping;
 pub use element::ElementKind;
 pub use error::{ReadError, TransferError};
 pub use format::Format;
+pub use half::{HalfError, SYMMETRY_LIMIT};
 pub use model::{
     ElasticMode, PARTICIPATION_LIMIT, RigidBodySettings, StructuralModel, StructureError,
     StructureSettings, load,
@@ -50,7 +53,7 @@ pub use model::{
 pub use neutral::{SCHEMA, write as write_neutral};
 pub use read::read_structure;
 pub use result::{Element, ModalResult, Mode, NamedSet, Node};
-pub use rigid::{Inertia, RigidBody, RigidBodyError, rigid_modes};
+pub use rigid::{Inertia, RIGID_KINDS, RigidBody, RigidBodyError, rigid_modes};
 pub use rigid_fit::{RecoveredBody, RigidFit, RigidSurvey, survey};
 pub use summary::{ModeSummary, ModesSummary, SetSummary, modes_summary};
 pub use transfer::{

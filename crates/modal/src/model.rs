@@ -3,12 +3,13 @@
 
 use crate::error::ReadError;
 use crate::format::Format;
+use crate::half::{HalfError, Probe};
 use crate::read::read_structure;
 use crate::result::{ModalResult, Mode};
 use crate::rigid::{Inertia, RigidBody, RigidBodyError};
-use crate::rigid_fit::{RecoveredBody, RigidSurvey, survey};
+use crate::rigid_fit::{RecoveredBody, RigidSurvey, survey_of};
 use crate::units::{Axes, Units};
-use fladder_mesh::Vec3;
+use fladder_mesh::{Symmetry, Vec3};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
@@ -31,8 +32,13 @@ pub struct StructureSettings {
     pub axes: Axes,
     /// The structure's origin in mesh axes, metres.
     pub origin: Vec3,
-    /// The files hold half of a symmetric structure.
+    /// The files hold half of a symmetric structure; mass properties that a
+    /// file states are those of the whole all the same.
     pub half: bool,
+    /// The kind of motion that is wanted of it, whole or half.
+    pub symmetry: Symmetry,
+    /// Whether modes of the other kind are left out; else they are refused.
+    pub leave_out_other: bool,
     /// First and last elastic mode, counted from 1; all where left out.
     pub modes: Option<[usize; 2]>,
     /// Mass properties that override those of the file.
@@ -61,7 +67,8 @@ pub struct ElasticMode {
     pub frequency_hz: f64,
     /// Circular frequency, rad/s; its square is the generalised stiffness.
     pub omega: f64,
-    /// Generalised mass in the file, before normalisation, kg.
+    /// Generalised mass before normalisation, kg: that in the file, twice that
+    /// of a half model.
     pub generalised_mass: f64,
     /// Displacement a node, m per √kg m.
     pub shape: Vec<Vec3>,
@@ -80,7 +87,10 @@ pub struct StructuralModel {
     pub rigid_body_from_file: Option<RecoveredBody>,
     /// Elastic modes, by ascending frequency.
     pub elastic: Vec<ElasticMode>,
-    /// The result in SI units and mesh axes.
+    /// The kind of motion they are.
+    pub symmetry: Symmetry,
+    /// The result in SI units and mesh axes; for a half surface without the
+    /// elements on y < 0.
     pub result: ModalResult,
     /// Which of its modes are rigid.
     pub survey: RigidSurvey,
@@ -98,6 +108,9 @@ pub enum StructureError {
     /// The mass properties.
     #[error(transparent)]
     RigidBody(#[from] RigidBodyError),
+    /// A half model that is none, or modes of the other kind.
+    #[error(transparent)]
+    Half(#[from] HalfError),
     /// A choice of modes the file does not hold.
     #[error(
         "structure.modes = [{first}, {last}] where the file holds the elastic modes 1 to {count}"
@@ -125,26 +138,66 @@ pub fn load(settings: &StructureSettings) -> Result<StructuralModel, StructureEr
         settings.format,
     )?;
     let read = if settings.half { read.doubled() } else { read };
-    let result = read.to_si_mesh_axes(settings.units, &settings.axes, &settings.origin);
-    let mut survey = survey(&result);
-    if settings.half {
-        survey.recovered = survey.recovered.map(RecoveredBody::with_mirror_image);
-    }
+    let mut result = read.to_si_mesh_axes(settings.units, &settings.axes, &settings.origin);
+    let is_half = settings.half || settings.symmetry.is_half();
+    let probe = is_half
+        .then(|| Probe::new(&result, settings.half))
+        .transpose()?;
+    let survey = if settings.half {
+        survey_of(&result, half_kind(settings.symmetry))
+    } else {
+        survey_of(&result, Symmetry::None)
+    };
     let mut notes = result.notes.clone();
     notes.extend(survey.notes.iter().cloned());
     notes.extend(survey.recovered.as_ref().and_then(asymmetry));
     let rigid_body = rigid_body(&settings.rigid_body, &result, &survey, &mut notes)?;
-    let elastic = elastic_modes(&result, &survey, rigid_body.as_ref(), &mut notes);
-    let elastic = subset(elastic, settings.modes)?;
+    participations(&mut result, settings);
+    let elastic = elastic_modes(&result, &survey, rigid_body.as_ref());
+    let mut elastic = subset(elastic, settings.modes)?;
+    if let Some(probe) = probe.filter(|_| settings.symmetry.is_half()) {
+        let (wanted, leave_out) = (settings.symmetry, settings.leave_out_other);
+        elastic = probe.select(elastic, wanted, leave_out, &mut notes)?;
+    }
+    notes.extend(elastic.iter().filter_map(oddity));
+    if settings.symmetry.is_half() && !settings.half {
+        result = result.starboard_elements();
+    }
     let rigid_body_from_file = survey.recovered;
     Ok(StructuralModel {
         rigid_body,
         rigid_body_from_file,
         elastic,
+        symmetry: settings.symmetry,
         result,
         survey,
         notes,
     })
+}
+
+/// Of a half structure by itself, without a surface, symmetric motion is
+/// assumed where it matters: for what three rigid modes mean.
+fn half_kind(symmetry: Symmetry) -> Symmetry {
+    if symmetry.is_half() {
+        symmetry
+    } else {
+        Symmetry::Symmetric
+    }
+}
+
+/// Participation factors of the whole: those of the mirror image add to what
+/// the half has along the plane in symmetric motion, across it in antisymmetric
+/// motion, and cancel the rest.
+fn participations(result: &mut ModalResult, settings: &StructureSettings) {
+    if !settings.half {
+        return;
+    }
+    for mode in &mut result.modes {
+        let doubled = mode
+            .participation
+            .map(|p| 2.0 * settings.symmetry.in_plane(p));
+        mode.participation = doubled.filter(|_| settings.symmetry.is_half());
+    }
 }
 
 fn rigid_body(
@@ -206,7 +259,6 @@ fn elastic_modes(
     result: &ModalResult,
     survey: &RigidSurvey,
     body: Option<&RigidBody>,
-    notes: &mut Vec<String>,
 ) -> Vec<ElasticMode> {
     let mut modes: Vec<&Mode> = result
         .modes
@@ -216,13 +268,11 @@ fn elastic_modes(
         .map(|(mode, _)| mode)
         .collect();
     modes.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
-    let elastic: Vec<ElasticMode> = modes
+    modes
         .iter()
         .enumerate()
         .map(|(k, mode)| normalised(mode, k + 1, body.map(|body| body.mass)))
-        .collect();
-    notes.extend(elastic.iter().filter_map(oddity));
-    elastic
+        .collect()
 }
 
 fn normalised(mode: &Mode, number: usize, mass: Option<f64>) -> ElasticMode {

@@ -9,7 +9,7 @@
 //! Axes x aft, y to starboard, z up and right-handed rotations: θ > 0 is nose
 //! up, φ > 0 starboard wing up, ψ > 0 nose to port.
 
-use fladder_mesh::{Frame, SurfaceMode, Vec3};
+use fladder_mesh::{Frame, SurfaceMode, Symmetry, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// Moments of inertia about the centre of mass, kg m²; the plane y = 0 is a
@@ -142,6 +142,30 @@ impl RigidBody {
         Ok(())
     }
 }
+
+impl RigidBody {
+    /// Two halves counted in the place of one, the second moved to its mirror
+    /// image: the centre of mass moves to y = 0, and the distance of each half
+    /// from there adds to the moments about x and z.
+    pub(crate) fn parted(mut self) -> Self {
+        let added = self.mass * self.cg.y * self.cg.y;
+        self.inertia.xx += added;
+        self.inertia.zz += added;
+        self.cg.y = 0.0;
+        self
+    }
+}
+
+/// Which kind of motion each rigid mode is, in their order: x, z and θ are
+/// symmetric about y = 0.
+pub const RIGID_KINDS: [Symmetry; 6] = [
+    Symmetry::Symmetric,
+    Symmetry::Antisymmetric,
+    Symmetry::Symmetric,
+    Symmetry::Antisymmetric,
+    Symmetry::Symmetric,
+    Symmetry::Antisymmetric,
+];
 
 /// The six rigid modes at the given points, in the order x, y, z, φ, θ, ψ.
 ///

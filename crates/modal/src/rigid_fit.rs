@@ -12,13 +12,14 @@
 
 use crate::result::ModalResult;
 use crate::rigid::{Inertia, RigidBody};
-use fladder_mesh::Vec3;
+use crate::rigid_half;
+use fladder_mesh::{Symmetry, Vec3};
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 
 /// Share of a shape's norm that a rigid fit may leave in a rigid mode. Six
 /// printed digits leave 2e-5; elastic modes, orthogonal to rigid motion with
 /// the mass as weight, leave a large part of one.
-const RIGID_RESIDUAL: f64 = 1e-3;
+pub(crate) const RIGID_RESIDUAL: f64 = 1e-3;
 
 /// Fits leaving less than this are named: a body on soft supports, or a rigid
 /// mode spoilt by writing.
@@ -73,11 +74,7 @@ impl RecoveredBody {
     /// each half from there adds to the moments about x and z.
     #[must_use]
     pub(crate) fn with_mirror_image(mut self) -> Self {
-        let RigidBody { mass, cg, inertia } = &mut self.body;
-        let added = *mass * cg.y * cg.y;
-        inertia.xx += added;
-        inertia.zz += added;
-        cg.y = 0.0;
+        self.body = self.body.parted();
         self.asymmetry = [0.0; 2];
         self
     }
@@ -103,9 +100,9 @@ impl RigidSurvey {
 
 /// Basis of rigid motion about the middle of some nodes, rotations scaled to
 /// the size of the structure so that the normal matrix is well conditioned.
-struct Basis {
-    centre: Vec3,
-    size: f64,
+pub(crate) struct Basis {
+    pub(crate) centre: Vec3,
+    pub(crate) size: f64,
     nodes: Vec<usize>,
 }
 
@@ -183,6 +180,12 @@ impl Basis {
 
 /// Fits every mode and recovers the mass properties.
 pub fn survey(result: &ModalResult) -> RigidSurvey {
+    survey_of(result, Symmetry::None)
+}
+
+/// As [`survey`]; of a half model, whose generalised masses are doubled, three
+/// rigid modes of one kind hold the mass properties that this kind needs.
+pub(crate) fn survey_of(result: &ModalResult, symmetry: Symmetry) -> RigidSurvey {
     let positions = result.positions();
     let mut notes = Vec::new();
     let basis = Basis::new(&positions, fit_nodes(result));
@@ -216,7 +219,25 @@ pub fn survey(result: &ModalResult) -> RigidSurvey {
             ));
         }
     }
-    let recovered = recover(result, &basis, &fits, &mut notes);
+    let rigid: Vec<(Vector6<f64>, f64)> = result
+        .modes
+        .iter()
+        .zip(&fits)
+        .filter(|(_, fit)| fit.rigid)
+        .map(|(mode, fit)| (fit.motion, mode.generalised_mass))
+        .collect();
+    let recovered = if symmetry.is_half() && rigid.len() == 3 {
+        rigid_half::recover(&rigid, &basis, symmetry, &mut notes)
+    } else {
+        let whole = recover(&rigid, &basis, &mut notes);
+        whole.map(|body| {
+            if symmetry.is_half() {
+                body.with_mirror_image()
+            } else {
+                body
+            }
+        })
+    };
     RigidSurvey {
         fits,
         recovered,
@@ -225,7 +246,7 @@ pub fn survey(result: &ModalResult) -> RigidSurvey {
 }
 
 /// Nodes of shells where there are any, else of solids, else all.
-fn fit_nodes(result: &ModalResult) -> Vec<usize> {
+pub(crate) fn fit_nodes(result: &ModalResult) -> Vec<usize> {
     let of = |wanted: fn(&crate::element::ElementKind) -> bool| {
         let mut used = vec![false; result.nodes.len()];
         for element in result
@@ -293,17 +314,15 @@ fn without_strays(result: &ModalResult, positions: &[Vec3], basis: Basis) -> (Ba
 }
 
 fn recover(
-    result: &ModalResult,
+    rigid: &[(Vector6<f64>, f64)],
     basis: &Basis,
-    fits: &[RigidFit],
     notes: &mut Vec<String>,
 ) -> Option<RecoveredBody> {
     let mut inverse_mass = Matrix6::zeros();
-    let mut count = 0;
-    for (mode, fit) in result.modes.iter().zip(fits).filter(|pair| pair.1.rigid) {
-        inverse_mass += fit.motion * fit.motion.transpose() / mode.generalised_mass;
-        count += 1;
+    for (motion, generalised_mass) in rigid {
+        inverse_mass += motion * motion.transpose() / *generalised_mass;
     }
+    let count = rigid.len();
     if count != 6 {
         if count > 0 {
             notes.push(format!("{count} rigid modes: mass properties need six"));

@@ -15,7 +15,7 @@ use crate::offset;
 use crate::read::{diagonal, ranges};
 use crate::result::ModalResult;
 use crate::skin::{self, Skin, SurfaceSearch};
-use fladder_mesh::{Frame, SurfaceMode, TriMesh, Vec3};
+use fladder_mesh::{Frame, SurfaceMode, Symmetry, TriMesh, Vec3};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -98,17 +98,58 @@ pub fn transfer(
     mesh: &TriMesh,
     components: &BTreeMap<String, Vec<String>>,
 ) -> Result<(Vec<SurfaceMode>, TransferReport), TransferError> {
-    let Transfer { matrix, report } = build(&model.result, mesh, components)?;
-    let modes = model
+    let Transfer { matrix, mut report } = build(&model.result, mesh, components)?;
+    let (modes, removed): (Vec<SurfaceMode>, Vec<f64>) = model
         .elastic
         .par_iter()
-        .map(|mode| SurfaceMode {
-            name: mode.name.clone(),
-            frame: Frame::Inertial,
-            displacement: matrix.displacement(&mode.shape),
+        .map(|mode| {
+            let mut displacement = matrix.displacement(&mode.shape);
+            let removed = hold_in_plane(&mut displacement, mesh, model.symmetry);
+            let mode = SurfaceMode {
+                name: mode.name.clone(),
+                frame: Frame::Inertial,
+                displacement,
+            };
+            (mode, removed)
         })
-        .collect();
+        .unzip();
+    let worst = (0..modes.len()).max_by(|&a, &b| removed[a].total_cmp(&removed[b]));
+    if let Some(worst) = worst.filter(|&worst| removed[worst] > SAID_IN_PLANE) {
+        report.notes.push(format!(
+            "in the symmetry plane the surface was kept from moving as {} motion cannot, by up to \
+             {:.1e} of the largest displacement, in {}",
+            model.symmetry.word(),
+            removed[worst],
+            modes[worst].name
+        ));
+    }
     Ok((modes, report))
+}
+
+/// Round-off of a displacement, relative to the largest.
+const SAID_IN_PLANE: f64 = 1e-9;
+
+/// Takes from the vertices in the plane of a half model what its kind of motion
+/// does not allow there; the largest part taken, relative to the largest
+/// displacement.
+fn hold_in_plane(displacement: &mut [Vec3], mesh: &TriMesh, symmetry: Symmetry) -> f64 {
+    if !symmetry.is_half() {
+        return 0.0;
+    }
+    let largest = displacement.iter().map(Vec3::norm).fold(0.0, f64::max);
+    let mut removed: f64 = 0.0;
+    for (u, vertex) in displacement.iter_mut().zip(&mesh.vertices) {
+        if vertex.y == 0.0 {
+            let kept = symmetry.in_plane(*u);
+            removed = removed.max((*u - kept).norm());
+            *u = kept;
+        }
+    }
+    if largest > 0.0 {
+        removed / largest
+    } else {
+        0.0
+    }
 }
 
 /// Builds the matrix that carries displacements from structure to mesh.

@@ -2,6 +2,7 @@
 //! the grid of the generalised aerodynamic forces.
 
 use super::one_or_many::OneOrMany;
+use fladder_mesh::Symmetry;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -57,21 +58,6 @@ pub struct Mesh {
 
 fn one() -> f64 {
     1.0
-}
-
-/// Half model or whole.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-pub enum Symmetry {
-    /// Whole model.
-    #[default]
-    #[serde(rename = "none")]
-    None,
-    /// Half model on y ≥ 0, symmetric motion.
-    #[serde(rename = "y")]
-    Symmetric,
-    /// Half model on y ≥ 0, antisymmetric motion.
-    #[serde(rename = "-y")]
-    Antisymmetric,
 }
 
 /// What counts as a trailing edge.

@@ -1,9 +1,9 @@
 //! Values that would make a computation meaningless are refused here, before
 //! anything is read or computed.
 
-use super::aerodynamics::{AnalyticMode, Gaf, Mesh, Symmetry};
+use super::aerodynamics::{AnalyticMode, Gaf, Mesh};
 use super::check_structure::structure;
-use super::{Case, CaseFile, Places, Range, Speeds, Stability, Trim};
+use super::{Case, CaseFile, Places, Range, Speeds, Stability, Structure, Trim};
 use crate::atmosphere;
 use crate::failure::Failure;
 
@@ -25,6 +25,7 @@ pub(super) fn check(file: &CaseFile) -> Checked {
     }
     if let Some(given) = &case.structure {
         structure(given, &at)?;
+        half_structure(case, given, &at)?;
     }
     for (number, mode) in case.modes.analytic.iter().enumerate() {
         let earlier = &case.modes.analytic[..number];
@@ -247,22 +248,32 @@ fn grid(case: &Case, gaf: &Gaf, at: &At<'_>) -> Checked {
     })
 }
 
+/// Half a structure moves half a surface.
+fn half_structure(case: &Case, given: &Structure, at: &At<'_>) -> Checked {
+    let is_whole_mesh = case.gaf.file.is_none()
+        && case
+            .mesh
+            .as_ref()
+            .is_some_and(|mesh| !mesh.symmetry.is_half());
+    if given.half && is_whole_mesh {
+        return Err(at.refuse(
+            "structure.half",
+            "`structure.half` is true with a mesh of the whole aircraft",
+            "the port side of the surface would have no structure to move it",
+            "give the half mesh on y ≥ 0 with mesh.symmetry = \"y\" or \"-y\", or a whole structure",
+        ));
+    }
+    Ok(())
+}
+
 fn surface(mesh: &Mesh, beta_deg: f64, at: &At<'_>) -> Checked {
     at.positive("mesh.scale", mesh.scale)?;
-    if mesh.symmetry != Symmetry::None && beta_deg != 0.0 {
+    if mesh.symmetry.is_half() && beta_deg != 0.0 {
         return Err(at.refuse(
             "flow.beta_deg",
             format!("`flow.beta_deg` is {beta_deg} with a half model"),
             "sideslip is not symmetric, a half model cannot carry it",
             "set beta_deg = 0, or mesh the whole aircraft with symmetry = \"none\"",
-        ));
-    }
-    if mesh.symmetry != Symmetry::None {
-        return Err(at.refuse(
-            "mesh.symmetry",
-            "half models are not computed yet",
-            "the half would be taken for a whole aircraft, open at y = 0",
-            "mesh the whole aircraft and set symmetry = \"none\"",
         ));
     }
     let edges = &mesh.trailing_edge;

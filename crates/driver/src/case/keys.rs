@@ -31,6 +31,7 @@ pub(crate) const KEYS: &[&str] = &[
     "structure.axes",
     "structure.origin",
     "structure.half",
+    "structure.other_symmetry",
     "structure.modes",
     "structure.damping",
     "structure.damping_model",

@@ -11,13 +11,15 @@ mod structure;
 mod suggest;
 
 pub use aerodynamics::{
-    AnalyticMode, Axis, Flow, Gaf, Mesh, Modes, Reference, Rotation, Symmetry, Term,
-    TrailingEdges, Wake, WakeDirection, WakeMode,
+    AnalyticMode, Axis, Flow, Gaf, Mesh, Modes, Reference, Rotation, Term, TrailingEdges, Wake,
+    WakeDirection, WakeMode,
 };
 pub use flight::{Flight, Range, Refine, Speeds, Stability, Thrust, Trim};
 pub use one_or_many::OneOrMany;
 pub use source::Places;
-pub use structure::{DampingModel, Inertia, Matrices, RigidBody, Structure, Units};
+pub use structure::{
+    DampingModel, Inertia, Matrices, OtherSymmetry, RigidBody, ShapeChange, Structure, Units,
+};
 
 use crate::failure::Failure;
 use serde::Deserialize;

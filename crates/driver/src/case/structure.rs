@@ -26,10 +26,16 @@ pub struct Structure {
     /// Whether the file is a half model.
     #[serde(default)]
     pub half: bool,
+    /// What becomes of modes of the other symmetry than that of a half mesh.
+    #[serde(default)]
+    pub other_symmetry: OtherSymmetry,
     /// Whether the steady pressure turns and stretches with the surface in the columns of
     /// elastic modes.
     #[serde(default = "yes")]
     pub pressure_turning: bool,
+    /// Whether elastic columns have the influences of the deformed surface.
+    #[serde(default)]
+    pub shape_change: ShapeChange,
     /// First and last elastic mode, from 1.
     pub modes: Option<[usize; 2]>,
     /// Structural damping coefficient, one or one per elastic mode.
@@ -65,6 +71,28 @@ pub enum Units {
     /// Foot, slug, second.
     #[serde(rename = "ft-slug-s")]
     FootSlug,
+}
+
+/// What becomes of elastic modes that a half mesh cannot carry.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OtherSymmetry {
+    /// They are refused by name.
+    #[default]
+    Refuse,
+    /// They are left out.
+    LeaveOut,
+}
+
+/// How the columns of elastic modes follow the shape.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ShapeChange {
+    /// Unknowns carried with the surface, influences unchanged.
+    #[default]
+    Attached,
+    /// Influences of the deformed surface, by differences: two assemblies more a mode.
+    Exact,
 }
 
 /// How structural damping enters.

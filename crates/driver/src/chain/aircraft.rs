@@ -6,7 +6,7 @@ use super::structure::StructureData;
 use super::surface::{Surface, Wanted};
 use crate::case::{self, CaseFile, Term};
 use crate::failure::Failure;
-use fladder_mesh::{SurfaceMode, Vec3};
+use fladder_mesh::{SurfaceMode, Symmetry, Vec3};
 use fladder_modal::{
     self as modal, Component, Motion, PolynomialTerm, RigidBody, TransferReport,
 };
@@ -44,8 +44,10 @@ impl Aircraft {
         let structure = StructureData::read(file)?;
         let vertices = &surface.mesh.vertices;
         let mut modes: Vec<SurfaceMode> = Vec::new();
+        let symmetry = surface.symmetry;
         if let Some(body) = &structure.body {
-            modes.extend(modal::rigid_modes(body, vertices));
+            centred(file, body, &surface)?;
+            modes.extend(rigid_of(symmetry, body, vertices));
         }
         let mut report = None;
         let rigid = modes.len();
@@ -69,7 +71,9 @@ impl Aircraft {
         let elastic = rigid..modes.len();
         for (number, mode) in file.case.modes.analytic.iter().enumerate() {
             let place = format!("modes.analytic.{number}");
-            let mut shape = analytic(mode).on(vertices).map_err(|error| {
+            let motion = analytic(mode);
+            of_kind(file, &motion, symmetry, &place)?;
+            let mut shape = motion.on(vertices).map_err(|error| {
                 Failure::input(
                     error.to_string(),
                     file.places.of(&place),
@@ -105,7 +109,7 @@ impl Aircraft {
         let asked = modes.len();
         if structure.body.is_none() && Scales::of(&file.case.reference).is_some() {
             let about = Vec3::from(file.case.reference.moment_point);
-            modes.extend(modal::rigid_modes(&RigidBody::unit(about), vertices));
+            modes.extend(rigid_of(symmetry, &RigidBody::unit(about), vertices));
         }
         Ok(Self {
             surface,
@@ -143,6 +147,64 @@ impl Aircraft {
         };
         self.asked - analytic
     }
+}
+
+/// Rigid modes of a half model turn about a point of its plane.
+fn centred(file: &CaseFile, body: &modal::RigidBody, surface: &Surface) -> Result<(), Failure> {
+    let (low, high) = surface.mesh.bounds().unwrap_or_default();
+    let limit = CENTRE_TOLERANCE * (high - low).norm();
+    if !surface.symmetry.is_half() || body.cg.y.abs() <= limit {
+        return Ok(());
+    }
+    Err(Failure::input(
+        format!(
+            "the centre of mass is at y = {} m with a half model, which may be {limit:.1e} m off \
+             the plane y = 0",
+            body.cg.y
+        ),
+        file.places.of("structure.rigid_body"),
+        "mass properties are those of the whole aircraft, symmetric about its plane",
+        "give cg with y = 0, and mass and inertia of both halves together",
+    ))
+}
+
+/// Distance of a centre of mass from the plane, relative to the size of the
+/// half, that is taken for rounding.
+const CENTRE_TOLERANCE: f64 = 1e-6;
+
+/// Refuses a mode that a half model cannot carry.
+fn of_kind(
+    file: &CaseFile,
+    mode: &modal::AnalyticMode,
+    symmetry: Symmetry,
+    place: &str,
+) -> Result<(), Failure> {
+    let kind = mode.symmetry();
+    if symmetry.carries(kind) {
+        return Ok(());
+    }
+    Err(Failure::input(
+        format!(
+            "mode `{}` is {}, the half model carries {} motion",
+            mode.name,
+            kind.word(),
+            symmetry.word()
+        ),
+        file.places.of(place),
+        "the mirror image of the half would move in another way than the mode says",
+        "remove the mode, or compute it on the half of its own symmetry or on the whole aircraft \
+         (mesh.symmetry)",
+    ))
+}
+
+/// The rigid modes of a body that a half model has: all of a whole one.
+fn rigid_of(symmetry: Symmetry, body: &RigidBody, vertices: &[Vec3]) -> Vec<SurfaceMode> {
+    modal::rigid_modes(body, vertices)
+        .into_iter()
+        .zip(modal::RIGID_KINDS)
+        .filter(|(_, kind)| symmetry.carries(*kind))
+        .map(|(mode, _)| mode)
+        .collect()
 }
 
 fn not_transferred(file: &CaseFile, error: &modal::TransferError) -> Failure {

@@ -82,7 +82,10 @@ impl Forces {
         let (path, given) = chosen(file)?;
         let place = path.display().to_string();
         fits(file, &given, &place)?;
-        let names = structure.mode_names();
+        let names = structure
+            .clone()
+            .with_rigid_modes_of(given.table.modes())
+            .mode_names();
         let has_matrices = file
             .case
             .structure
@@ -148,7 +151,7 @@ impl Forces {
                         error.to_string(),
                         file.places.of("gaf.file"),
                         "rigid modes are swept in body axes",
-                        "give all six rigid modes in the file, or those in frame body",
+                        "give all six rigid modes in the file (three of a half model), or those in frame body",
                     )
                 })?;
         self.notes.extend_from_slice(self.table.notes());

@@ -4,7 +4,7 @@
 use crate::case::{self, CaseFile, DampingModel, OneOrMany};
 use crate::failure::Failure;
 use faer::Mat;
-use fladder_mesh::Vec3;
+use fladder_mesh::{Symmetry, Vec3};
 use fladder_modal as modal;
 use fladder_stability::{self as stability, System, SystemError};
 
@@ -17,6 +17,8 @@ pub(crate) struct StructureData {
     pub(crate) body: Option<modal::RigidBody>,
     /// Circular frequencies of the elastic modes, rad/s.
     pub(crate) frequencies: Vec<f64>,
+    /// The kind of motion, where the surface is a half.
+    pub(crate) symmetry: Symmetry,
 }
 
 impl StructureData {
@@ -36,20 +38,13 @@ impl StructureData {
                 .transpose()?;
             return Ok(Self {
                 body,
+                symmetry: symmetry(file),
                 ..Self::default()
             });
         };
         let settings = settings(file, given, path)?;
         let place = || format!("{}: {}", file.places.of("structure.file"), path.display());
-        let model = modal::load(&settings).map_err(|error| {
-            Failure::input(
-                error.to_string(),
-                place(),
-                "modes that are wrong or incomplete give wrong roots without any sign of it",
-                "correct the file or the keys of [structure]; `fladder modes FILE` shows what a \
-                 file holds",
-            )
-        })?;
+        let model = modal::load(&settings).map_err(|error| not_loaded(&error, place()))?;
         let body = match (&given.rigid_body, model.rigid_body) {
             (Some(_), Some(body)) => Some(body),
             (Some(_), None) => {
@@ -67,18 +62,83 @@ impl StructureData {
             model: Some(model),
             body,
             frequencies,
+            symmetry: symmetry(file),
         })
     }
 
     /// Names of rigid and elastic modes, in order.
     pub(crate) fn mode_names(&self) -> Vec<String> {
-        let rigid = self.body.iter().flat_map(|_| stability::RIGID_NAMES);
+        let rigid = self.body.iter().flat_map(|_| self.rigid_names());
         let elastic = self.model.iter().flat_map(|model| &model.elastic);
         rigid
             .map(str::to_owned)
             .chain(elastic.map(|mode| mode.name.clone()))
             .collect()
     }
+
+    /// Names of the rigid modes of this kind of motion: six, or three of a
+    /// half model.
+    fn rigid_names(&self) -> impl Iterator<Item = &'static str> {
+        let symmetry = self.symmetry;
+        stability::RIGID_NAMES
+            .into_iter()
+            .zip(modal::RIGID_KINDS)
+            .filter(move |(_, kind)| symmetry.carries(*kind))
+            .map(|(name, _)| name)
+    }
+
+    /// Takes the kind of motion that forces from a file have by the rigid modes
+    /// among them, where the case has no mesh that says it.
+    pub(crate) fn with_rigid_modes_of(mut self, modes: &[String]) -> Self {
+        let there: Vec<&str> = modes
+            .iter()
+            .map(String::as_str)
+            .filter(|mode| stability::RIGID_NAMES.contains(mode))
+            .collect();
+        for symmetry in [Symmetry::Symmetric, Symmetry::Antisymmetric] {
+            let candidate = Self {
+                symmetry,
+                ..Self::default()
+            };
+            if there == candidate.rigid_names().collect::<Vec<_>>() {
+                self.symmetry = symmetry;
+            }
+        }
+        self
+    }
+}
+
+/// The kind of motion of the case's mesh.
+fn symmetry(file: &CaseFile) -> Symmetry {
+    let mesh = file.case.mesh.as_ref();
+    mesh.map(|mesh| mesh.symmetry).unwrap_or_default()
+}
+
+fn not_loaded(error: &modal::StructureError, place: String) -> Failure {
+    use modal::{HalfError, StructureError};
+    let (why, remedy) = match error {
+        StructureError::Half(HalfError::OtherKind { .. }) => (
+            "the mirror image of the half surface would move in another way than these modes say",
+            "choose others with structure.modes, leave these out with structure.other_symmetry = \
+             \"leave-out\", or mesh the whole aircraft",
+        ),
+        StructureError::Half(HalfError::Side { .. }) => (
+            "the half surface on y ≥ 0 would have no structure to move it",
+            "set structure.half = false for a whole structure; mirror one that lies on y < 0, or turn \
+             it by structure.axes",
+        ),
+        StructureError::Half(_) => (
+            "a half model carries modes of one kind only",
+            "give a structure that is symmetric about y = 0 in mesh axes (structure.axes, \
+             structure.origin), a half structure, or mesh the whole aircraft",
+        ),
+        _ => (
+            "modes that are wrong or incomplete give wrong roots without any sign of it",
+            "correct the file or the keys of [structure]; `fladder modes FILE` shows what a file \
+             holds",
+        ),
+    };
+    Failure::input(error.to_string(), place, why, remedy)
 }
 
 fn settings(
@@ -107,6 +167,8 @@ fn settings(
         axes: axes(file, given)?,
         origin: Vec3::from(given.origin),
         half: given.half,
+        symmetry: symmetry(file),
+        leave_out_other: given.other_symmetry == case::OtherSymmetry::LeaveOut,
         modes: given.modes,
         rigid_body: modal::RigidBodySettings {
             mass: body.and_then(|body| body.mass),

@@ -4,7 +4,7 @@ use crate::case::{CaseFile, TrailingEdges, Wake, WakeMode};
 use crate::failure::Failure;
 use fladder_mesh::judge::{self, Code, Fault, Severity};
 use fladder_mesh::read::{self, ReadError};
-use fladder_mesh::{Topology, TrailingEdge, TriMesh, trailing_edge};
+use fladder_mesh::{Symmetry, Topology, TrailingEdge, TriMesh, trailing_edge};
 use std::path::{Path, PathBuf};
 
 /// What is asked of a surface.
@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Wanted {
     pub(crate) file: PathBuf,
     pub(crate) scale: f64,
+    pub(crate) symmetry: Symmetry,
     pub(crate) trailing_edges: TrailingEdges,
     pub(crate) wake: Wake,
     /// Where groups are named, for messages.
@@ -37,6 +38,7 @@ impl Wanted {
         Ok(Self {
             file: file.existing("mesh.file", &mesh.file)?,
             scale: mesh.scale,
+            symmetry: mesh.symmetry,
             trailing_edges: mesh.trailing_edge.clone(),
             wake: file.case.wake.clone(),
             groups_place: file.places.of("mesh.trailing_edge.groups"),
@@ -50,6 +52,7 @@ impl Wanted {
         Self {
             file: file.to_owned(),
             scale: 1.0,
+            symmetry: Symmetry::None,
             trailing_edges: TrailingEdges::default(),
             wake: Wake::default(),
             groups_place: place.clone(),
@@ -63,7 +66,10 @@ impl Wanted {
 pub(crate) struct Surface {
     pub(crate) file: PathBuf,
     pub(crate) mesh: TriMesh,
+    /// Whether the mesh is a half, and of which motion.
+    pub(crate) symmetry: Symmetry,
     pub(crate) faults: Vec<Fault>,
+    /// Bodies, area in m² and volume in m³ of the whole aircraft.
     pub(crate) bodies: usize,
     /// Number of each triangle's body, from 1.
     pub(crate) body_of_triangle: Vec<i32>,
@@ -83,27 +89,33 @@ impl Surface {
     pub(crate) fn read(wanted: &Wanted) -> Result<Self, Failure> {
         let loaded = read::load(&wanted.file, wanted.scale)
             .map_err(|error| unreadable(&wanted.file, &error))?;
-        let judgement = judge::judge(loaded.mesh, judge::Settings::default());
+        let settings = judge::Settings {
+            symmetry_plane: wanted.symmetry.is_half(),
+            ..judge::Settings::default()
+        };
+        let judgement = judge::judge(loaded.mesh, settings);
+        let mut notes = loaded.notes;
         let mut faults = judgement.faults;
         let mesh = judgement.mesh;
         let count = mesh.triangles.len();
         let has_errors = faults.iter().any(|fault| fault.severity == Severity::Error);
         let (mut trailing_edges, mut body_lines) = (Vec::new(), Vec::new());
         if !has_errors && wanted.wake.mode != WakeMode::None {
-            trailing_edges = find_trailing_edges(&mesh, wanted, &mut faults)?;
+            trailing_edges = find_trailing_edges(&mesh, wanted, &mut faults, &mut notes)?;
             body_lines = named_lines(&mesh, wanted)?;
         }
         Ok(Self {
             file: wanted.file.clone(),
             mesh,
+            symmetry: wanted.symmetry,
             faults,
-            bodies: judgement.bodies.len(),
+            bodies: judgement.whole_bodies,
             body_of_triangle: numbered(count, &judgement.bodies),
             area: judgement.area,
             volume: judgement.volume,
             trailing_edges,
             body_lines,
-            notes: loaded.notes,
+            notes,
         })
     }
 
@@ -193,17 +205,39 @@ fn find_trailing_edges(
     mesh: &TriMesh,
     wanted: &Wanted,
     faults: &mut Vec<Fault>,
+    notes: &mut Vec<String>,
 ) -> Result<Vec<TrailingEdge>, Failure> {
     let topology = Topology::new(mesh);
     let settings = trailing_edge::Settings {
         max_wedge_deg: wanted.trailing_edges.max_wedge_deg,
         min_downstream: wanted.trailing_edges.min_downstream,
     };
+    let wrong = |error: trailing_edge::TrailingEdgeError| {
+        unknown_groups(&error.to_string(), &wanted.groups_place)
+    };
     let found = match &wanted.trailing_edges.groups {
-        Some(groups) => trailing_edge::find_from_groups(mesh, &topology, groups)
-            .map_err(|error| unknown_groups(&error.to_string(), &wanted.groups_place))?,
+        Some(groups) if wanted.symmetry.is_half() => {
+            trailing_edge::find_from_groups_of_half(mesh, &topology, groups).map_err(wrong)?
+        }
+        Some(groups) => {
+            trailing_edge::find_from_groups(mesh, &topology, groups).map_err(wrong)?
+        }
         None => trailing_edge::find_by_shape(mesh, &topology, settings),
     };
+    let in_plane = match &wanted.trailing_edges.groups {
+        _ if !wanted.symmetry.is_half() => Vec::new(),
+        Some(groups) => trailing_edge::in_plane_from_groups(mesh, &topology, groups),
+        None => trailing_edge::in_plane_by_shape(mesh, &topology, settings),
+    };
+    if !in_plane.is_empty() && wanted.symmetry == Symmetry::Antisymmetric {
+        faults.push(judge::plane_trailing_edge(mesh, &in_plane));
+    } else if !in_plane.is_empty() {
+        notes.push(format!(
+            "{} trailing edges in the symmetry plane carry no wake: symmetric motion makes no jump \
+             there",
+            in_plane.len()
+        ));
+    }
     if found.is_empty() {
         let severity = match wanted.wake.mode {
             WakeMode::Required => Severity::Error,

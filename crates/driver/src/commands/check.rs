@@ -9,7 +9,7 @@ use crate::chain::surface::{Surface, Wanted, refusal};
 use crate::failure::Failure;
 use crate::report::{self, EdgeEnd};
 use fladder_bem::{Plan, Problem, WakeSheet};
-use fladder_mesh::Vec3;
+use fladder_mesh::Symmetry;
 use fladder_mesh::judge::{Code, Fault, Severity};
 use serde::Serialize;
 use std::path::Path;
@@ -21,6 +21,7 @@ const SCHEMA: &str = "fladder.check/1";
 struct Findings {
     schema: &'static str,
     ok: bool,
+    symmetry: Symmetry,
     vertices: usize,
     triangles: usize,
     bodies: usize,
@@ -144,7 +145,11 @@ fn look_further(
             report::transfer(console, aircraft.transfer.as_ref());
             findings.modes = aircraft.mode_names();
             let problem = own_forces::problem(file, &aircraft);
-            fladder_bem::plan(&problem).map_err(|error| own_forces::unsolved(file, &error))?
+            let mut plan = fladder_bem::plan(&problem)
+                .map_err(|error| own_forces::unsolved(file, &error))?;
+            plan.notes
+                .extend(own_forces::guarded(file, &problem, &plan)?);
+            plan
         }
         None => bare_plan(surface)?,
     };
@@ -186,6 +191,7 @@ fn bare_plan(surface: &Surface) -> Result<Plan, Failure> {
     let (low, high) = surface.mesh.bounds().unwrap_or_default();
     let problem = Problem {
         body_lines: &surface.body_lines,
+        symmetry: surface.symmetry,
         // A mesh by itself has no reference length; the wake's extent is
         // reckoned from half of the surface's length.
         ..Problem::new(
@@ -249,6 +255,7 @@ impl Findings {
         Self {
             schema: SCHEMA,
             ok: false,
+            symmetry: surface.symmetry,
             vertices: surface.mesh.vertices.len(),
             triangles: surface.mesh.triangles.len(),
             bodies: surface.bodies,

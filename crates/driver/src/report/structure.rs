@@ -16,7 +16,7 @@ pub(crate) fn structure(console: &Console, data: &StructureData) {
     let mut table = Table::new(&[
         ("mode", Align::Left),
         ("f [Hz]", Align::Right),
-        ("generalised mass in the file", Align::Right),
+        ("generalised mass before scaling", Align::Right),
     ]);
     for mode in &model.elastic {
         table.row([

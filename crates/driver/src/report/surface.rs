@@ -22,6 +22,14 @@ pub(crate) fn surface(console: &Console, surface: &Surface) {
         surface.area,
         surface.volume
     ));
+    if surface.symmetry.is_half() {
+        console.say(format!(
+            "  half model on y ≥ 0, {} motion: the whole aircraft has {} triangles; bodies, area and \
+             volume are those of the whole",
+            surface.symmetry.word(),
+            2 * mesh.triangles.len()
+        ));
+    }
     if let Some((low, high)) = mesh.bounds() {
         let size = high - low;
         console.say(format!(

@@ -14,9 +14,11 @@ pub struct Body {
     /// Number of handles, from χ = 2 − 2 genus; in a half model that of the
     /// whole body, whose χ is twice the half's. `None` when open or pinched.
     pub genus: Option<u32>,
-    /// Area, m².
+    /// Whether the symmetry plane of a half model cuts it.
+    pub is_cut: bool,
+    /// Area of what is given, m².
     pub area: f64,
-    /// Volume, m³, positive; `None` when open.
+    /// Volume of what is given, m³, positive; `None` when open.
     pub volume: Option<f64>,
 }
 
@@ -105,6 +107,7 @@ fn measured(
         triangles: part.iter().map(|&t| surface.triangle[t as usize]).collect(),
         euler,
         genus,
+        is_cut: has_rim,
         area: finite.map(|&t| mesh.area_vector(t as usize).norm()).sum(),
         volume: (is_closed && is_finite).then(|| volume(surface, part, settings)),
     }

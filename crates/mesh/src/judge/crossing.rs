@@ -2,7 +2,7 @@
 
 use super::fault::counted;
 use super::predicates::triangles_cross;
-use super::{Code, Element, Fault, Settings, Surface};
+use super::{Code, Element, Fault, Surface};
 use crate::Vec3;
 
 /// Pairs after which the search ends: a mesh with so many is beyond repair by
@@ -12,11 +12,12 @@ const MAX_PAIRS: usize = 10_000;
 /// Triangles in a leaf of the tree.
 const LEAF: usize = 4;
 
-/// Raises `self_crossing`, also where a half model reaches its mirror image.
-pub(super) fn check(surface: &Surface, settings: Settings, faults: &mut Vec<Fault>) {
+/// Raises `self_crossing`, also where a half model on y ≥ 0 reaches its mirror
+/// image.
+pub(super) fn check(surface: &Surface, is_half: bool, faults: &mut Vec<Fault>) {
     let mut pairs = Tree::new(surface).crossing_pairs(surface);
     pairs.sort_unstable();
-    let across = if settings.symmetry_plane {
+    let across = if is_half {
         across_symmetry_plane(surface)
     } else {
         Vec::new()
@@ -51,12 +52,13 @@ pub(super) fn check(surface: &Surface, settings: Settings, faults: &mut Vec<Faul
         ));
     }
     let what = what.join(" and ");
-    let fault = Fault::new(
-        Code::SelfCrossing,
-        what,
-        "a surface through another has no inside",
-        "unite the parts in the mesh generator, so that no triangle is inside the body",
-    );
+    let remedy = if pairs.is_empty() {
+        "cut the surface at y = 0 and leave it open there, without a wall in the plane"
+    } else {
+        "unite the parts in the mesh generator, so that no triangle is inside the body"
+    };
+    let why = "a surface through another has no inside";
+    let fault = Fault::new(Code::SelfCrossing, what, why, remedy);
     let place = |k: usize| {
         pairs
             .get(k)
@@ -229,6 +231,7 @@ impl Tree {
 mod tests {
     use super::*;
     use crate::TriMesh;
+    use crate::judge::Settings;
     use crate::judge::elements::welded_surface;
     use crate::shapes::icosphere;
 

@@ -1,6 +1,6 @@
 //! Edges and vertices at which the surface is not a surface.
 
-use super::fault::counted;
+use super::fault::{counted, short};
 use super::{Code, Element, Fault, Settings, Surface};
 use crate::Topology;
 
@@ -25,6 +25,7 @@ pub(super) fn check(
     surface: &Surface,
     topology: &Topology,
     is_rim: &[bool],
+    settings: Settings,
     faults: &mut Vec<Fault>,
 ) {
     let beside_gap = |edge: usize| {
@@ -52,7 +53,12 @@ pub(super) fn check(
         }
     }
     if !open.is_empty() {
-        faults.push(of_edges(surface, topology, &open, open_edges(open.len())));
+        let fault = if settings.symmetry_plane {
+            open_beside_plane(surface, topology, &open)
+        } else {
+            open_edges(open.len())
+        };
+        faults.push(of_edges(surface, topology, &open, fault));
     }
     if !manifold.is_empty() {
         let most = manifold
@@ -71,7 +77,39 @@ pub(super) fn check(
         );
         faults.push(of_edges(surface, topology, &manifold, fault));
     }
-    check_fans(surface, topology, &is_doubtful, faults);
+    let is_closed_in_plane = closed_in_plane(surface, topology, is_rim, settings);
+    check_fans(surface, topology, &is_doubtful, &is_closed_in_plane, faults);
+}
+
+/// Vertices in which a half model touches its mirror image without being open
+/// there; those of walls in the plane cross it.
+fn closed_in_plane(
+    surface: &Surface,
+    topology: &Topology,
+    is_rim: &[bool],
+    settings: Settings,
+) -> Vec<bool> {
+    let mut is_closed = vec![false; surface.mesh.vertices.len()];
+    if !settings.symmetry_plane {
+        return is_closed;
+    }
+    let mut mark = |vertices: &[u32], value: &dyn Fn(u32) -> bool| {
+        for &v in vertices {
+            is_closed[v as usize] = value(v);
+        }
+    };
+    let triangles = &surface.mesh.triangles;
+    for triangle in triangles {
+        mark(triangle, &|v| surface.is_in_symmetry_plane(v));
+    }
+    let in_plane = |t: &&[u32; 3]| t.iter().all(|&v| surface.is_in_symmetry_plane(v));
+    for wall in triangles.iter().filter(in_plane) {
+        mark(wall, &|_| false);
+    }
+    for (edge, _) in is_rim.iter().enumerate().filter(|(_, is_rim)| **is_rim) {
+        mark(&topology.edges[edge], &|_| false);
+    }
+    is_closed
 }
 
 fn open_edges(count: usize) -> Fault {
@@ -86,6 +124,28 @@ fn open_edges(count: usize) -> Fault {
     )
 }
 
+/// Open edges of a half model: how far the nearest lies from the plane.
+fn open_beside_plane(surface: &Surface, topology: &Topology, open: &[usize]) -> Fault {
+    let distance = |&edge: &usize| {
+        let [a, b] = topology.edges[edge].map(|v| surface.mesh.vertices[v as usize].y.abs());
+        a.max(b)
+    };
+    let nearest = open.iter().map(distance).fold(f64::INFINITY, f64::min);
+    let what = format!(
+        "the surface is open along {} beside the plane y = 0, the nearest {} m away, limit {} m",
+        counted(open.len(), "edge", "edges"),
+        short(nearest),
+        short(surface.tolerance)
+    );
+    Fault::new(
+        Code::OpenEdge,
+        what,
+        "a half model is closed by its mirror image in the plane alone",
+        "move the rim of the half to y = 0 exactly, and close the surface elsewhere",
+    )
+    .against(nearest, surface.tolerance)
+}
+
 fn of_edges(surface: &Surface, topology: &Topology, edges: &[usize], fault: Fault) -> Fault {
     let elements = edges
         .iter()
@@ -94,15 +154,20 @@ fn of_edges(surface: &Surface, topology: &Topology, edges: &[usize], fault: Faul
     fault.at(elements, |k| Some(surface.middle(topology.edges[edges[k]])))
 }
 
-/// Raises `bow_tie` at vertices whose triangles form more than one fan.
+/// Raises `bow_tie` at vertices whose triangles form more than one fan, that
+/// of the mirror image counted.
 fn check_fans(
     surface: &Surface,
     topology: &Topology,
     is_doubtful: &[bool],
+    is_closed_in_plane: &[bool],
     faults: &mut Vec<Fault>,
 ) {
     let tied: Vec<u32> = (0..surface.mesh.vertices.len() as u32)
-        .filter(|&v| !is_doubtful[v as usize] && n_fans(surface, topology, v) > 1)
+        .filter(|&v| {
+            !is_doubtful[v as usize]
+                && (is_closed_in_plane[v as usize] || n_fans(surface, topology, v) > 1)
+        })
         .collect();
     if tied.is_empty() {
         return;

@@ -24,6 +24,10 @@ pub enum Code {
     Needle,
     /// Vertices in one place.
     DuplicateVertices,
+    /// A half model that is none: whole, on the wrong side, or off the plane.
+    NotAHalf,
+    /// Vertices of a half model beside the plane y = 0.
+    OffPlane,
     /// An edge with one triangle.
     OpenEdge,
     /// An edge with more than two triangles.
@@ -40,6 +44,8 @@ pub enum Code {
     NestedBodies,
     /// No edge from which a wake would leave.
     NoTrailingEdge,
+    /// A trailing edge in the symmetry plane of a half model.
+    PlaneTrailingEdge,
     /// Mesh and structure of different size.
     Units,
     /// More elements than memory or time allow.
@@ -55,6 +61,8 @@ impl Code {
             Self::ZeroArea => "zero_area",
             Self::Needle => "needle",
             Self::DuplicateVertices => "duplicate_vertices",
+            Self::NotAHalf => "not_a_half",
+            Self::OffPlane => "off_plane",
             Self::OpenEdge => "open_edge",
             Self::NonManifoldEdge => "non_manifold_edge",
             Self::BowTie => "bow_tie",
@@ -63,6 +71,7 @@ impl Code {
             Self::SelfCrossing => "self_crossing",
             Self::NestedBodies => "nested_bodies",
             Self::NoTrailingEdge => "no_trailing_edge",
+            Self::PlaneTrailingEdge => "plane_trailing_edge",
             Self::Units => "units",
             Self::TooLarge => "too_large",
         }
@@ -74,12 +83,16 @@ impl Code {
             Self::NotFinite
             | Self::BadIndex
             | Self::ZeroArea
+            | Self::NotAHalf
             | Self::OpenEdge
             | Self::NonManifoldEdge
             | Self::BowTie
             | Self::SelfCrossing
+            | Self::PlaneTrailingEdge
             | Self::TooLarge => Severity::Error,
-            Self::DuplicateVertices | Self::Flipped | Self::InsideOut => Severity::Repaired,
+            Self::DuplicateVertices | Self::OffPlane | Self::Flipped | Self::InsideOut => {
+                Severity::Repaired
+            }
             Self::Needle | Self::NestedBodies | Self::NoTrailingEdge | Self::Units => {
                 Severity::Warning
             }
@@ -254,6 +267,26 @@ pub(super) fn short(x: f64) -> String {
     } else {
         format!("{rounded:e}")
     }
+}
+
+/// That a trailing edge lies in the symmetry plane of an antisymmetric half
+/// model, where the edge of a central fin has a wake that a half cannot carry.
+pub fn plane_trailing_edge(mesh: &TriMesh, edges: &[[u32; 2]]) -> Fault {
+    let place = |k: usize| {
+        let [a, b] = edges[k].map(|v| mesh.vertices[v as usize]);
+        Some(0.5 * (a + b))
+    };
+    Fault::new(
+        Code::PlaneTrailingEdge,
+        format!(
+            "a trailing edge of {} lies in the symmetry plane, that of a central fin",
+            counted(edges.len(), "edge", "edges")
+        ),
+        "in antisymmetric motion a fin lifts and sheds a wake in the plane itself, of which a half \
+         model holds one side only",
+        "mesh the whole aircraft and set mesh.symmetry = \"none\"",
+    )
+    .at(edges.iter().copied().map(Element::Edge).collect(), place)
 }
 
 /// That a surface has no trailing edge, with the sharpest edge that points

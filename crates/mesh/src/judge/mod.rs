@@ -1,26 +1,28 @@
 //! Whether a surface can be computed, and what is wrong with it.
 //!
 //! The order is that of dependence: indices, finite numbers, welding,
-//! degenerate triangles, edges, orientation, bodies and their volume, vertex
+//! degenerate triangles, the side of a half model, edges, orientation, bodies and their volume, vertex
 //! fans, crossings, nesting. Nothing stops at the first fault: what one fault
 //! makes meaningless is left out, everything else is still looked at. Each
 //! kind of fault is listed once, with all its elements.
 //!
-//! Three kinds are repaired and said: duplicate vertices are welded, triangles
-//! against the run of their neighbours turned, bodies inside out turned.
+//! Four kinds are repaired and said: duplicate vertices are welded, vertices
+//! beside the plane of a half model moved into it, triangles against the run of
+//! their neighbours turned, bodies inside out turned.
 
 mod bodies;
 mod crossing;
 mod edges;
 mod elements;
 mod fault;
+mod half;
 mod nesting;
 mod orientation;
 mod predicates;
 
 pub use bodies::Body;
 pub use elements::{MIN_SHAPE, ZERO_HEIGHT};
-pub use fault::{Code, Element, Fault, Severity, no_trailing_edge};
+pub use fault::{Code, Element, Fault, Severity, no_trailing_edge, plane_trailing_edge};
 
 use crate::weld::WELD_TOLERANCE;
 use crate::{Topology, TriMesh, Vec3};
@@ -30,7 +32,8 @@ use crate::{Topology, TriMesh, Vec3};
 pub struct Settings {
     /// Half model: the part on y ≥ 0 of a body symmetric in y = 0. Edges that
     /// lie in that plane are then not open; what reaches across it, or lies in
-    /// it, would cross its mirror image.
+    /// it, would cross its mirror image. Vertices within the distance of
+    /// welding from the plane lie in it.
     pub symmetry_plane: bool,
     /// Vertices closer than this fraction of the bounding box's diagonal are welded.
     pub weld_tolerance: f64,
@@ -55,10 +58,15 @@ pub struct Judgement {
     pub faults: Vec<Fault>,
     /// Connected parts, in the order of their first triangle.
     pub bodies: Vec<Body>,
-    /// Area of the triangles that can be measured, m²; a half model's own half.
+    /// Area of the triangles that can be measured, m²; of the whole aircraft
+    /// also where half of it is given.
     pub area: f64,
-    /// Sum of the volumes of the closed bodies, m³; a half model's own half.
+    /// Sum of the volumes of the closed bodies, m³; of the whole aircraft also
+    /// where half of it is given.
     pub volume: f64,
+    /// Connected parts of the whole aircraft: one beside the plane of a half
+    /// model and its image are two.
+    pub whole_bodies: usize,
 }
 
 impl Judgement {
@@ -119,10 +127,17 @@ pub fn judge(mesh: TriMesh, settings: Settings) -> Judgement {
     let mut faults = Vec::new();
     elements::check_numbers(&mesh, &mut faults);
     let mut surface = elements::welded_surface(&mesh, settings, &mut faults);
+    let side = half::side(&surface, settings, &mut faults);
+    // What is whole is judged as a whole.
+    let settings = Settings {
+        symmetry_plane: settings.symmetry_plane && side != half::Side::Both,
+        ..settings
+    };
+    half::move_into_plane(&mut surface, settings, &mut faults);
     elements::check_shapes(&mesh, &surface, &mut faults);
     let topology = Topology::new(&surface.mesh);
     let is_rim = edges::symmetry_rim(&surface, &topology, settings);
-    edges::check(&surface, &topology, &is_rim, &mut faults);
+    edges::check(&surface, &topology, &is_rim, settings, &mut faults);
     let parts = orientation::orient(&mut surface, &topology, &mut faults);
     let bodies = bodies::measure(
         &mut surface,
@@ -132,19 +147,24 @@ pub fn judge(mesh: TriMesh, settings: Settings) -> Judgement {
         settings,
         &mut faults,
     );
-    crossing::check(&surface, settings, &mut faults);
+    let is_starboard_half = settings.symmetry_plane && side == half::Side::Starboard;
+    crossing::check(&surface, is_starboard_half, &mut faults);
+    half::check_rim(&surface, &is_rim, settings, &mut faults);
     nesting::check(&surface, &bodies, settings, &mut faults);
-    let area = (0..surface.mesh.triangles.len())
+    let area: f64 = (0..surface.mesh.triangles.len())
         .filter(|&t| surface.is_finite[t])
         .map(|t| surface.mesh.area_vector(t).norm())
         .sum();
-    let volume = bodies.iter().filter_map(|body| body.volume).sum();
+    let volume: f64 = bodies.iter().filter_map(|body| body.volume).sum();
+    let copies = if settings.symmetry_plane { 2.0 } else { 1.0 };
+    let is_doubled = |body: &&Body| settings.symmetry_plane && !body.is_cut;
     Judgement {
         mesh: repaired(mesh, surface),
         faults,
+        area: copies * area,
+        volume: copies * volume,
+        whole_bodies: bodies.len() + bodies.iter().filter(is_doubled).count(),
         bodies,
-        area,
-        volume,
     }
 }
 
