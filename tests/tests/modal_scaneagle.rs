@@ -1,6 +1,8 @@
 //! The modal results of the ScanEagle-like aircraft: read, judged, carried to
 //! the wetted surface.
 
+mod common;
+
 use fladder_mesh::{TriMesh, Vec3, read::read_mesh};
 use fladder_modal::{
     Axes, Mapping, RigidBody, StructuralModel, StructureSettings, Transfer, TransferError,
@@ -46,38 +48,9 @@ fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
-/// Skins of each side, the fuselage as one; webs, ribs and springs left out.
-fn components() -> BTreeMap<String, Vec<String>> {
-    let mut map = BTreeMap::new();
-    for (side, mark) in [("r", ""), ("l", "_P")] {
-        let mut add = |group: &str, sets: &[&str]| {
-            let sets = sets.iter().map(|set| format!("{set}{mark}")).collect();
-            map.insert(format!("{group}_{side}"), sets);
-        };
-        add(
-            "wing",
-            &["WLE", "WCAP", "WBOX", "WTE", "LLE", "LCAP", "LBOX", "LTE"],
-        );
-        add(
-            "winglet",
-            &["WLE", "WCAP", "WBOX", "WTE", "LLE", "LCAP", "LBOX", "LTE"],
-        );
-        add("elevon", &["WCS"]);
-        add("rudder", &["LCS"]);
-    }
-    let body = ["FUS", "FUSZ0", "FUSZ1", "FUSZ2", "FUSZ3"];
-    let both: Vec<String> = body
-        .iter()
-        .flat_map(|s| [(*s).to_owned(), format!("{s}_P")])
-        .collect();
-    for group in ["fuselage_r", "fuselage_l"] {
-        map.insert(group.to_owned(), both.clone());
-    }
-    map
-}
-
 fn carried(mesh: &TriMesh, model: &StructuralModel) -> Transfer {
-    build_transfer(&model.result, mesh, &components()).expect("structure and mesh fit")
+    build_transfer(&model.result, mesh, &common::scaneagle_components())
+        .expect("structure and mesh fit")
 }
 
 fn sample(points: &[Vec3], field: impl Fn(&Vec3) -> Vec3) -> Vec<Vec3> {
@@ -378,8 +351,8 @@ fn rigid_modes_of_the_file_are_those_of_the_mass_properties() {
 #[test]
 fn webs_ribs_and_springs_are_named_and_left_out() {
     let (model, mesh) = (model(), mesh("scaneagle_3k.msh"));
-    let (modes, report) =
-        transfer(&model, &mesh, &components()).expect("structure and mesh fit");
+    let (modes, report) = transfer(&model, &mesh, &common::scaneagle_components())
+        .expect("structure and mesh fit");
     assert_eq!(modes.len(), 20);
     assert_eq!(
         (&*modes[0].name, &*modes[19].name),

@@ -7,6 +7,15 @@ pub(crate) fn undirected(a: u32, b: u32) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
 
+/// Which way round a vertex, seen from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Turn {
+    /// Counter-clockwise.
+    Left,
+    /// Clockwise.
+    Right,
+}
+
 /// Who touches whom in a closed triangle surface.
 #[derive(Clone, Debug)]
 pub(crate) struct Adjacency<'a> {
@@ -65,6 +74,41 @@ impl<'a> Adjacency<'a> {
         self.triangles[triangle as usize]
             .iter()
             .position(|&v| v == vertex)
+    }
+
+    /// The corner of a triangle that is neither `a` nor `b`.
+    fn third(&self, triangle: u32, a: u32, b: u32) -> Option<u32> {
+        self.corners(triangle)
+            .into_iter()
+            .find(|&v| v != a && v != b)
+    }
+
+    /// Triangles round `vertex` seen from outside: counter-clockwise from the edge to
+    /// `from` or clockwise, up to the first further edge that `stop` takes; and that
+    /// edge's other vertex. None at an open rim, or where no edge stops.
+    pub(crate) fn sector(
+        &self,
+        vertex: u32,
+        from: u32,
+        turn: Turn,
+        stop: impl Fn(u32) -> bool,
+    ) -> Option<(Vec<u32>, u32)> {
+        let mut triangles = Vec::new();
+        let mut edge = from;
+        loop {
+            let next = match turn {
+                Turn::Left => self.left_of(vertex, edge)?,
+                Turn::Right => self.left_of(edge, vertex)?,
+            };
+            triangles.push(next);
+            edge = self.third(next, vertex, edge)?;
+            if stop(edge) {
+                return Some((triangles, edge));
+            }
+            if edge == from || triangles.len() > self.triangles_of(vertex).len() {
+                return None;
+            }
+        }
     }
 
     /// Groups into which the edges of `cuts` divide the triangles round `vertex`.

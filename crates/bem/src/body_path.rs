@@ -1,24 +1,26 @@
 //! Lines along which a wake's inner edge lies on a body.
 //!
 //! Where a trailing edge ends on a body, the jump of its last vertex is carried along
-//! the body: a line of mesh edges is followed downstream from the junction to the tail,
-//! and its vertices divide the body's triangles into an upper and a lower side. Lines of
-//! two trailing edges (port and starboard wing) meet at the tail; where they end apart,
-//! at a blunt base, a shortest line of mesh edges joins them.
+//! the body: a line of mesh edges is followed downstream from the junction, and its
+//! vertices divide the body's triangles into an upper and a lower side. Each line carries
+//! its own jump, and jumps of lines that share vertices or edges add. A line ends
+//!
+//! * at a vertex of another trailing edge, whose sheet takes the jump up;
+//! * at a tail where others end too, or at a blunt base over which shortest lines of mesh
+//!   edges join them in one vertex: a *node*;
+//! * alone.
 
-use crate::adjacency::{Adjacency, undirected};
+use crate::adjacency::{Adjacency, Turn, undirected};
+use crate::body_node::gather_nodes;
+use crate::body_trace::Downstream;
 use crate::error::BemError;
 use fladder_mesh::{TrailingEdge, Vec3};
-use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 
 /// Cosine between the stream and the nearest direction on the surface, above which a
 /// trailing edge's end is a junction: the surface goes on downstream there. At a free
 /// tip it turns back; half-way is 45°.
 const JUNCTION_COSINE: f64 = 0.82;
-
-/// Smallest cosine between stream and mesh edge with which a line is followed on.
-const FOLLOW_COSINE: f64 = 0.05;
 
 /// Which end of a trailing edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -28,31 +30,109 @@ pub(crate) struct ChainEnd {
     pub(crate) last: bool,
 }
 
+/// How a body line ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Finish {
+    /// At a vertex of another trailing edge.
+    TrailingEdge,
+    /// In a node, by its number.
+    Node(usize),
+    /// At a vertex of its own.
+    Alone,
+}
+
 /// The line from one junction down the body.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BodyPath {
     pub(crate) end: ChainEnd,
-    /// Mesh vertices from the junction on.
+    /// Mesh vertices from the junction on, to the node where the line ends in one.
     pub(crate) vertices: Vec<u32>,
+    /// Index of the vertex up to which the line runs downstream; what follows crosses a
+    /// base.
+    pub(crate) whole: usize,
+    pub(crate) finish: Finish,
 }
 
-/// Two lines that meet, or one alone.
+impl BodyPath {
+    /// The side of the line, going downstream, on which the trailing edge's upper side
+    /// lies.
+    pub(crate) fn upper(&self) -> Turn {
+        if self.end.last {
+            Turn::Left
+        } else {
+            Turn::Right
+        }
+    }
+
+    /// The last vertex.
+    pub(crate) fn last(&self) -> u32 {
+        self.vertices[self.vertices.len() - 1]
+    }
+}
+
+/// A vertex in which several lines end.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct BodyCut {
-    /// Line whose trailing edge comes before it in the sheet's direction (index of the
-    /// path), if any, and the line whose trailing edge goes on from it.
-    pub(crate) before: Option<usize>,
-    pub(crate) after: Option<usize>,
-    /// Mesh vertices from the end of `before` to the end of `after`; one vertex where
-    /// they meet, none for a line alone.
-    pub(crate) bridge: Vec<u32>,
+pub(crate) struct Node {
+    pub(crate) vertex: u32,
+    pub(crate) paths: Vec<usize>,
+    /// For each of the paths, the jump with which its sheet leaves the node, as weights
+    /// of the paths' own jumps.
+    pub(crate) shares: Vec<Vec<(usize, f64)>>,
 }
 
 /// All lines on bodies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct BodyPaths {
     pub(crate) paths: Vec<BodyPath>,
-    pub(crate) cuts: Vec<BodyCut>,
+    pub(crate) nodes: Vec<Node>,
+}
+
+impl BodyPaths {
+    /// The line from an end of a chain.
+    pub(crate) fn of_end(&self, chain: usize, last: bool) -> Option<usize> {
+        self.paths
+            .iter()
+            .position(|p| p.end == ChainEnd { chain, last })
+    }
+
+    /// Jump at vertex number `index` of a line, as weights of the lines' jumps: whole
+    /// down to the tail, then linear in length to the node's share.
+    pub(crate) fn jump_at(
+        &self,
+        path: usize,
+        index: usize,
+        vertices: &[Vec3],
+    ) -> Vec<(usize, f64)> {
+        let line = &self.paths[path];
+        let Finish::Node(node) = line.finish else {
+            return vec![(path, 1.0)];
+        };
+        let length = |to: usize| -> f64 {
+            (line.whole..to)
+                .map(|i| {
+                    let [a, b] = [i, i + 1].map(|j| vertices[line.vertices[j] as usize]);
+                    (b - a).norm()
+                })
+                .sum()
+        };
+        let last = line.vertices.len() - 1;
+        let share = if index == last {
+            1.0
+        } else if index <= line.whole {
+            return vec![(path, 1.0)];
+        } else {
+            length(index) / length(last)
+        };
+        let node = &self.nodes[node];
+        let place = node.paths.iter().position(|&p| p == path).unwrap_or(0);
+        node.shares[place]
+            .iter()
+            .map(|&(k, weight)| {
+                let own = if k == path { 1.0 - share } else { 0.0 };
+                (k, own + share * weight)
+            })
+            .collect()
+    }
 }
 
 /// What is needed to follow lines over the surface.
@@ -70,43 +150,54 @@ impl Tracer<'_> {
     /// Finds the junctions and the lines from them.
     pub(crate) fn trace(&self) -> Result<BodyPaths, BemError> {
         let trailing: HashSet<(u32, u32)> = self.trailing_edges().collect();
-        let trailing_vertices: HashSet<u32> = self
-            .chains
-            .iter()
-            .flat_map(|c| c.vertices.iter().copied())
-            .collect();
+        let degree = edges_at(&trailing);
         let named = self.named_neighbours();
-        let mut paths = Vec::new();
-        for (chain, edge) in self.chains.iter().enumerate() {
-            if edge.closed {
-                continue;
-            }
+        let mut ends = Vec::new();
+        for (chain, edge) in self.chains.iter().enumerate().filter(|(_, c)| !c.closed) {
             for last in [false, true] {
                 let junction = end_vertex(edge, last);
-                let start_named = named.contains_key(&junction);
-                if !start_named && !self.surface_goes_on(junction, &trailing) {
-                    continue;
+                // Where several trailing edges meet, each sector has its own potential
+                // and the sheets need no line.
+                if degree[&junction] == 1
+                    && (named.contains_key(&junction)
+                        || self.surface_goes_on(junction, &trailing))
+                {
+                    ends.push((ChainEnd { chain, last }, junction));
                 }
-                let vertices = if start_named {
-                    self.follow_named(junction, &named)?
-                } else {
-                    self.follow(junction, &trailing, &trailing_vertices)?
-                };
-                paths.push(BodyPath {
-                    end: ChainEnd { chain, last },
-                    vertices,
-                });
             }
         }
-        Ok(self.join(paths, &trailing))
+        let junctions: HashSet<u32> = ends.iter().map(|&(_, v)| v).collect();
+        let barrier: HashSet<u32> = degree
+            .keys()
+            .copied()
+            .filter(|v| !junctions.contains(v))
+            .collect();
+        let mut paths = Vec::new();
+        for (end, junction) in ends {
+            let vertices = if named.contains_key(&junction) {
+                self.follow_named(junction, &named, &barrier)?
+            } else {
+                self.follow(end, junction, &barrier)?
+            };
+            let meets = barrier.contains(&vertices[vertices.len() - 1]);
+            paths.push(BodyPath {
+                end,
+                whole: vertices.len() - 1,
+                vertices,
+                finish: if meets {
+                    Finish::TrailingEdge
+                } else {
+                    Finish::Alone
+                },
+            });
+        }
+        Ok(gather_nodes(self, paths, &trailing))
     }
 
     fn trailing_edges(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        self.chains.iter().flat_map(|c| {
-            let n = c.vertices.len();
-            let edges = if c.closed { n } else { n.saturating_sub(1) };
-            (0..edges).map(move |i| undirected(c.vertices[i], c.vertices[(i + 1) % n]))
-        })
+        self.chains
+            .iter()
+            .flat_map(|c| c.edges().map(|[a, b]| undirected(a, b)))
     }
 
     /// Whether some direction on the surface at `vertex`, off the trailing edge itself,
@@ -135,46 +226,32 @@ impl Tracer<'_> {
         Some([neighbours[(i + 1) % 3], neighbours[(i + 2) % 3]])
     }
 
-    /// The next mesh edge with the largest cosine to the stream, until none goes
-    /// downstream.
+    /// The line that keeps closest to the plane of the wake at the junction.
     fn follow(
         &self,
+        end: ChainEnd,
         junction: u32,
-        trailing: &HashSet<(u32, u32)>,
-        trailing_vertices: &HashSet<u32>,
+        barrier: &HashSet<u32>,
     ) -> Result<Vec<u32>, BemError> {
-        let mut line = vec![junction];
-        let mut current = junction;
-        loop {
-            let origin = self.vertices[current as usize];
-            let best = self
-                .adjacency
-                .neighbours(current)
-                .into_iter()
-                .filter(|&v| !trailing.contains(&undirected(current, v)))
-                .map(|v| {
-                    let step = self.vertices[v as usize] - origin;
-                    (v, step.normalize().dot(&self.downstream))
-                })
-                .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
-            match best {
-                Some((next, cosine)) if cosine > FOLLOW_COSINE => {
-                    if trailing_vertices.contains(&next) {
-                        return Err(BemError::PathMeetsTrailingEdge {
-                            junction,
-                            vertex: next,
-                        });
-                    }
-                    line.push(next);
-                    current = next;
-                }
-                _ => break,
+        let chain = &self.chains[end.chain].vertices;
+        let n = chain.len();
+        let beside = if end.last { chain[n - 2] } else { chain[1] };
+        let search = Downstream {
+            vertices: self.vertices,
+            adjacency: self.adjacency,
+            stream: self.downstream,
+            own: chain,
+            barrier,
+        };
+        search.line(junction, beside).ok_or_else(|| {
+            let p = self.vertices[junction as usize];
+            BemError::PathNotFound {
+                junction,
+                x: p.x,
+                y: p.y,
+                z: p.z,
             }
-        }
-        if line.len() < 2 {
-            return Err(BemError::PathNotFound { junction });
-        }
-        Ok(line)
+        })
     }
 
     fn named_neighbours(&self) -> HashMap<u32, Vec<u32>> {
@@ -186,15 +263,17 @@ impl Tracer<'_> {
         map
     }
 
-    /// A named line from the junction; where it forks, at the tail, it ends.
+    /// A named line from the junction; where it forks, at the tail, or meets a trailing
+    /// edge, it ends.
     fn follow_named(
         &self,
         junction: u32,
         named: &HashMap<u32, Vec<u32>>,
+        barrier: &HashSet<u32>,
     ) -> Result<Vec<u32>, BemError> {
         let mut line = vec![junction];
         let mut current = junction;
-        loop {
+        while !barrier.contains(&current) {
             let origin = self.vertices[current as usize];
             let next = named
                 .get(&current)
@@ -203,10 +282,8 @@ impl Tracer<'_> {
                 .copied()
                 .filter(|v| !line.contains(v))
                 .map(|v| {
-                    (
-                        v,
-                        (self.vertices[v as usize] - origin).dot(&self.downstream),
-                    )
+                    let step = self.vertices[v as usize] - origin;
+                    (v, step.dot(&self.downstream))
                 })
                 .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
             match next {
@@ -216,151 +293,24 @@ impl Tracer<'_> {
                 }
                 // At the tail the line of the other side leads back upstream.
                 Some(_) if line.len() > 1 => break,
-                Some((v, _)) => {
-                    return Err(BemError::PathNotDownstream {
-                        junction,
-                        vertex: v,
-                    });
+                Some((vertex, _)) => {
+                    return Err(BemError::PathNotDownstream { junction, vertex });
                 }
                 None => break,
             }
         }
-        if line.len() < 2 {
-            return Err(BemError::PathNotFound { junction });
-        }
         Ok(line)
     }
-
-    /// Pairs the line of a chain's last vertex with the nearest line of a chain's first
-    /// vertex: the sheet then runs on in one direction with one upper side.
-    fn join(&self, mut paths: Vec<BodyPath>, trailing: &HashSet<(u32, u32)>) -> BodyPaths {
-        let mut pairs = Vec::new();
-        for before in (0..paths.len()).filter(|&p| paths[p].end.last) {
-            for after in (0..paths.len()).filter(|&p| !paths[p].end.last) {
-                if let Some(meeting) = self.meet(&paths[before], &paths[after], trailing) {
-                    pairs.push((before, after, meeting));
-                }
-            }
-        }
-        pairs.sort_by(|x, y| x.2.length.total_cmp(&y.2.length));
-        let mut taken = vec![false; paths.len()];
-        let mut cuts = Vec::new();
-        for (before, after, meeting) in pairs {
-            if taken[before] || taken[after] {
-                continue;
-            }
-            taken[before] = true;
-            taken[after] = true;
-            paths[before].vertices.truncate(meeting.keep_before);
-            paths[after].vertices.truncate(meeting.keep_after);
-            cuts.push(BodyCut {
-                before: Some(before),
-                after: Some(after),
-                bridge: meeting.bridge,
-            });
-        }
-        for alone in (0..paths.len()).filter(|&p| !taken[p]) {
-            let last = paths[alone].end.last;
-            cuts.push(BodyCut {
-                before: last.then_some(alone),
-                after: (!last).then_some(alone),
-                bridge: Vec::new(),
-            });
-        }
-        BodyPaths { paths, cuts }
-    }
-
-    fn meet(
-        &self,
-        before: &BodyPath,
-        after: &BodyPath,
-        trailing: &HashSet<(u32, u32)>,
-    ) -> Option<Meeting> {
-        for (i, v) in before.vertices.iter().enumerate().skip(1) {
-            if let Some(j) = after.vertices.iter().skip(1).position(|w| w == v) {
-                return Some(Meeting {
-                    keep_before: i + 1,
-                    keep_after: j + 2,
-                    bridge: vec![*v],
-                    length: 0.0,
-                });
-            }
-        }
-        let from = *before.vertices.last()?;
-        let to = *after.vertices.last()?;
-        let (bridge, length) = self.shortest(from, to, trailing)?;
-        Some(Meeting {
-            keep_before: before.vertices.len(),
-            keep_after: after.vertices.len(),
-            bridge,
-            length,
-        })
-    }
-
-    /// Shortest line of mesh edges off the trailing edges (Dijkstra).
-    fn shortest(
-        &self,
-        from: u32,
-        to: u32,
-        trailing: &HashSet<(u32, u32)>,
-    ) -> Option<(Vec<u32>, f64)> {
-        let mut best: HashMap<u32, (f64, u32)> = HashMap::from([(from, (0.0, from))]);
-        let mut queue = BinaryHeap::from([(Reverse(OrderedLength(0.0)), Reverse(from))]);
-        while let Some((Reverse(OrderedLength(length)), Reverse(v))) = queue.pop() {
-            if v == to {
-                let mut line = vec![to];
-                let mut current = to;
-                while current != from {
-                    current = best.get(&current)?.1;
-                    line.push(current);
-                }
-                line.reverse();
-                return Some((line, length));
-            }
-            if length > best.get(&v)?.0 {
-                continue;
-            }
-            for w in self.adjacency.neighbours(v) {
-                if trailing.contains(&undirected(v, w)) {
-                    continue;
-                }
-                let step = (self.vertices[w as usize] - self.vertices[v as usize]).norm();
-                let total = length + step;
-                if best.get(&w).is_none_or(|&(known, _)| total < known) {
-                    best.insert(w, (total, v));
-                    queue.push((Reverse(OrderedLength(total)), Reverse(w)));
-                }
-            }
-        }
-        None
-    }
 }
 
-struct Meeting {
-    keep_before: usize,
-    keep_after: usize,
-    bridge: Vec<u32>,
-    length: f64,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct OrderedLength(f64);
-
-impl PartialEq for OrderedLength {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
+/// Number of trailing edges at each of their vertices.
+fn edges_at(trailing: &HashSet<(u32, u32)>) -> HashMap<u32, usize> {
+    let mut degree = HashMap::new();
+    for &(a, b) in trailing {
+        *degree.entry(a).or_insert(0) += 1;
+        *degree.entry(b).or_insert(0) += 1;
     }
-}
-impl Eq for OrderedLength {}
-impl PartialOrd for OrderedLength {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for OrderedLength {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0)
-    }
+    degree
 }
 
 /// The vertex at one end of an open trailing edge.

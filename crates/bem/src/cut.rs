@@ -4,29 +4,31 @@
 //! and a lower value; their difference is the wake's jump κ. A free tip keeps one value:
 //! the jump is zero there. A junction with a body is doubled too, by the first edge of
 //! the body line; along the rest of the line the vertices stay single and the jump is
-//! added on the corners of their upper triangles.
+//! added on the corners of their upper triangles (`carry`).
+//!
+//! Where n trailing edges meet in one vertex they divide its triangles into n sectors with
+//! a value each. One is the reference, the others' differences from it are n − 1 columns,
+//! and the jump of each edge is the difference of its two sectors: counted one way round,
+//! the jumps of the n sheets sum to zero, as they must where sheets meet in a line.
 
 use crate::adjacency::{Adjacency, undirected};
-use crate::body_path::{BodyPaths, end_vertex};
+use crate::body_path::BodyPaths;
+use crate::carry::{CarriedCorner, Carrier, Join};
 use crate::error::BemError;
 use crate::image::on_plane;
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
-use std::collections::HashSet;
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 
-/// One doubled vertex: κ = φ(upper) − φ(lower).
+/// Two values of one vertex: κ = φ(upper) − φ(lower).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Column {
     pub(crate) upper: u32,
     pub(crate) lower: u32,
 }
 
-/// The corners on the upper side of one vertex of a body line.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct UpperCorners {
-    pub(crate) vertex: u32,
-    /// Triangle and corner number.
-    pub(crate) corners: Vec<(u32, usize)>,
-}
+/// A jump as weights of the columns' κ; empty where it is zero.
+pub(crate) type Jump = Vec<(usize, f64)>;
 
 /// Surface cut open along its trailing edges.
 #[derive(Clone, Debug)]
@@ -36,13 +38,26 @@ pub(crate) struct CutSurface {
     /// Mesh vertex of each vertex.
     pub(crate) source: Vec<u32>,
     pub(crate) columns: Vec<Column>,
-    /// Column of each vertex of each chain; none at free tips.
-    pub(crate) chain_columns: Vec<Vec<Option<usize>>>,
-    /// Upper corners along each body cut, junctions left out.
-    pub(crate) cut_corners: Vec<Vec<UpperCorners>>,
+    /// Jump at each vertex of each chain; empty at free tips.
+    pub(crate) chain_jumps: Vec<Vec<Jump>>,
+    /// Whether the first and the last vertex of each chain lie on a body.
+    pub(crate) on_body: Vec<[bool; 2]>,
+    /// Shares of body lines' jumps on corners of triangles.
+    pub(crate) carried: Vec<CarriedCorner>,
+    /// Body lines that end on other trailing edges.
+    pub(crate) joins: Vec<Join>,
+}
+
+/// The sectors of one vertex.
+struct Sectors {
+    /// Sector of each triangle.
+    of_triangle: HashMap<u32, usize>,
+    /// Column of each sector, none of the reference.
+    columns: Vec<Option<usize>>,
 }
 
 impl CutSurface {
+    /// `half`: the mesh is open at y = 0, where trailing edges go on.
     pub(crate) fn new(
         mesh: &TriMesh,
         adjacency: &Adjacency<'_>,
@@ -50,192 +65,144 @@ impl CutSurface {
         paths: &BodyPaths,
         half: bool,
     ) -> Result<Self, BemError> {
+        let carrier = Carrier {
+            vertices: &mesh.vertices,
+            adjacency,
+            chains,
+            paths,
+        };
+        let (carried, joins) = carrier.carry()?;
         let mut surface = Self {
             vertices: mesh.vertices.clone(),
             triangles: mesh.triangles.clone(),
             source: (0..mesh.vertices.len() as u32).collect(),
             columns: Vec::new(),
-            chain_columns: Vec::new(),
-            cut_corners: Vec::new(),
+            chain_jumps: Vec::new(),
+            on_body: (0..chains.len())
+                .map(|c| [false, true].map(|last| paths.of_end(c, last).is_some()))
+                .collect(),
+            carried,
+            joins,
         };
-        let cuts = cut_edges(chains, paths);
-        for (c, chain) in chains.iter().enumerate() {
-            let columns = (0..chain.vertices.len())
-                .map(|i| surface.double((c, i), chain, adjacency, paths, &cuts, half))
-                .collect::<Result<_, _>>()?;
-            surface.chain_columns.push(columns);
+        let cuts = Cuts::new(chains, paths);
+        let mut sectors: HashMap<u32, Option<Sectors>> = HashMap::new();
+        for chain in chains {
+            let mut jumps = Vec::with_capacity(chain.vertices.len());
+            for (i, &vertex) in chain.vertices.iter().enumerate() {
+                let edge = if i < chain.upper.len() { i } else { i - 1 };
+                let [upper, lower] = [chain.upper[edge], chain.lower[edge]];
+                let own = match sectors.entry(vertex) {
+                    Entry::Occupied(known) => known.into_mut(),
+                    Entry::Vacant(new) => {
+                        new.insert(surface.divide(vertex, lower, adjacency, &cuts, half)?)
+                    }
+                };
+                jumps.push(
+                    own.as_ref()
+                        .map_or_else(Jump::new, |s| s.jump(upper, lower)),
+                );
+            }
+            surface.chain_jumps.push(jumps);
         }
-        surface.cut_corners = (0..paths.cuts.len())
-            .map(|i| upper_corners(i, adjacency, chains, paths))
-            .collect::<Result<_, _>>()?;
         Ok(surface)
     }
 
-    /// Doubles one vertex of a chain, unless it is a free tip. On the plane of symmetry of
-    /// a half model the edge goes on.
-    fn double(
+    /// Gives each sector of a vertex its own number, the one with the triangle `reference`
+    /// the old one. None at a free tip; on the plane of symmetry of a half model the edge
+    /// goes on.
+    fn divide(
         &mut self,
-        (c, i): (usize, usize),
-        chain: &TrailingEdge,
+        vertex: u32,
+        reference: u32,
         adjacency: &Adjacency<'_>,
-        paths: &BodyPaths,
-        cuts: &HashSet<(u32, u32)>,
+        cuts: &Cuts,
         half: bool,
-    ) -> Result<Option<usize>, BemError> {
-        let vertex = chain.vertices[i];
-        let n = chain.vertices.len();
-        let is_end = !chain.closed && (i == 0 || i == n - 1);
-        let is_junction = paths
-            .paths
-            .iter()
-            .any(|p| p.end.chain == c && p.vertices[0] == vertex);
-        let goes_on = half && on_plane(&self.vertices[vertex as usize]);
-        if is_end && !is_junction && !goes_on {
+    ) -> Result<Option<Sectors>, BemError> {
+        let cuts = &cuts.at[&vertex];
+        let arriving = cuts.len();
+        let p = self.vertices[vertex as usize];
+        let on_plane = half && on_plane(&p);
+        if arriving == 1 && !on_plane {
             return Ok(None);
         }
         let groups = adjacency.fan_groups(vertex, cuts);
-        if groups.len() != 2 {
-            let p = self.vertices[vertex as usize];
+        let expected = if on_plane { arriving + 1 } else { arriving };
+        if groups.len() != expected {
             return Err(BemError::TrailingFan {
                 vertex,
                 x: p.x,
                 y: p.y,
                 z: p.z,
+                edges: arriving,
                 groups: groups.len(),
             });
         }
-        let beside = chain.upper[if i < chain.upper.len() { i } else { i - 1 }];
-        let upper = self.vertices.len() as u32;
-        self.vertices.push(self.vertices[vertex as usize]);
-        self.source.push(vertex);
-        for group in groups.iter().filter(|g| g.contains(&beside)) {
+        let mut sectors = Sectors {
+            of_triangle: HashMap::new(),
+            columns: Vec::new(),
+        };
+        for (g, group) in groups.iter().enumerate() {
+            sectors.of_triangle.extend(group.iter().map(|&t| (t, g)));
+            if group.contains(&reference) {
+                sectors.columns.push(None);
+                continue;
+            }
+            let own = self.vertices.len() as u32;
+            self.vertices.push(p);
+            self.source.push(vertex);
             for &t in group {
                 for v in &mut self.triangles[t as usize] {
                     if *v == vertex {
-                        *v = upper;
+                        *v = own;
                     }
                 }
             }
-        }
-        self.columns.push(Column {
-            upper,
-            lower: vertex,
-        });
-        Ok(Some(self.columns.len() - 1))
-    }
-}
-
-/// Trailing edges, and at junctions the first edge of the body line.
-fn cut_edges(chains: &[TrailingEdge], paths: &BodyPaths) -> HashSet<(u32, u32)> {
-    let mut cuts = HashSet::new();
-    for chain in chains {
-        let n = chain.vertices.len();
-        for i in 0..chain.upper.len() {
-            cuts.insert(undirected(chain.vertices[i], chain.vertices[(i + 1) % n]));
-        }
-    }
-    for path in &paths.paths {
-        cuts.insert(undirected(path.vertices[0], path.vertices[1]));
-    }
-    cuts
-}
-
-/// Upper corners along one body cut.
-///
-/// The side is handed on from triangle to triangle: at the junction it is the side of
-/// the trailing edge's upper triangles, at each further vertex the side that holds the
-/// upper triangle of the edge just passed.
-fn upper_corners(
-    cut: usize,
-    adjacency: &Adjacency<'_>,
-    chains: &[TrailingEdge],
-    paths: &BodyPaths,
-) -> Result<Vec<UpperCorners>, BemError> {
-    let body_cut = &paths.cuts[cut];
-    let line = cut_line(cut, paths);
-    // A line alone is walked from its junction; its last vertex has no second side.
-    let walk: Vec<u32> = if body_cut.before.is_some() {
-        line.clone()
-    } else {
-        line.iter().rev().copied().collect()
-    };
-    let start = body_cut
-        .before
-        .or(body_cut.after)
-        .expect("a cut has a line");
-    let end = paths.paths[start].end;
-    let chain = &chains[end.chain];
-    let mut cuts = HashSet::from([undirected(walk[0], walk[1])]);
-    let (te_index, te_other) = if end.last {
-        (
-            chain.upper.len() - 1,
-            chain.vertices[chain.vertices.len() - 2],
-        )
-    } else {
-        (0, chain.vertices[1])
-    };
-    cuts.insert(undirected(end_vertex(chain, end.last), te_other));
-    let mut seed = chain.upper[te_index];
-    let mut upper = Vec::new();
-    for i in 0..walk.len() - 1 {
-        let vertex = walk[i];
-        if i > 0 {
-            cuts = HashSet::from([
-                undirected(walk[i - 1], vertex),
-                undirected(vertex, walk[i + 1]),
-            ]);
-        }
-        let groups = adjacency.fan_groups(vertex, &cuts);
-        if groups.len() != 2 {
-            return Err(BemError::PathFan {
-                vertex,
-                groups: groups.len(),
+            self.columns.push(Column {
+                upper: own,
+                lower: vertex,
             });
+            sectors.columns.push(Some(self.columns.len() - 1));
         }
-        let side = groups
-            .iter()
-            .find(|g| g.contains(&seed))
-            .unwrap_or(&groups[0]);
-        if i > 0 {
-            let corners = side
-                .iter()
-                .filter_map(|&t| adjacency.corner(t, vertex).map(|c| (t, c)))
-                .collect();
-            upper.push(UpperCorners { vertex, corners });
-        }
-        seed = [
-            adjacency.left_of(vertex, walk[i + 1]),
-            adjacency.left_of(walk[i + 1], vertex),
-        ]
-        .into_iter()
-        .flatten()
-        .find(|t| side.contains(t))
-        .ok_or(BemError::PathFan {
-            vertex,
-            groups: groups.len(),
-        })?;
+        Ok(Some(sectors))
     }
-    Ok(upper)
 }
 
-/// Vertices of a body cut from the junction of `before` to that of `after`.
-pub(crate) fn cut_line(cut: usize, paths: &BodyPaths) -> Vec<u32> {
-    let body_cut = &paths.cuts[cut];
-    let mut line = Vec::new();
-    if let Some(before) = body_cut.before {
-        line.extend(&paths.paths[before].vertices);
-    }
-    for &v in &body_cut.bridge {
-        if line.last() != Some(&v) {
-            line.push(v);
+impl Sectors {
+    /// φ on the sector of one triangle less φ on that of another.
+    fn jump(&self, upper: u32, lower: u32) -> Jump {
+        let column = |t: u32| {
+            let sector = self.of_triangle.get(&t)?;
+            self.columns[*sector]
+        };
+        let plus = column(upper).map(|c| (c, 1.0));
+        let minus = column(lower).map(|c| (c, -1.0));
+        if plus.map(|p| p.0) == minus.map(|m| m.0) {
+            return Jump::new();
         }
+        plus.into_iter().chain(minus).collect()
     }
-    if let Some(after) = body_cut.after {
-        for &v in paths.paths[after].vertices.iter().rev() {
-            if line.last() != Some(&v) {
-                line.push(v);
+}
+
+/// The edges that divide the triangles round each trailing-edge vertex: trailing edges,
+/// and at a junction the first edge of the body line.
+struct Cuts {
+    at: HashMap<u32, HashSet<(u32, u32)>>,
+}
+
+impl Cuts {
+    fn new(chains: &[TrailingEdge], paths: &BodyPaths) -> Self {
+        let mut at: HashMap<u32, HashSet<(u32, u32)>> = HashMap::new();
+        for [a, b] in chains.iter().flat_map(TrailingEdge::edges) {
+            for v in [a, b] {
+                at.entry(v).or_default().insert(undirected(a, b));
             }
         }
+        for path in &paths.paths {
+            let [junction, next] = [path.vertices[0], path.vertices[1]];
+            at.entry(junction)
+                .or_default()
+                .insert(undirected(junction, next));
+        }
+        Self { at }
     }
-    line
 }

@@ -22,6 +22,25 @@ pub enum BemError {
         /// Mesh vertex.
         vertex: usize,
     },
+    /// Exact change of shape with antisymmetric motion of a half model.
+    #[error(
+        "exact elastic columns deform the surface, and an antisymmetrically deformed half is no half of a symmetric surface; mesh the whole aircraft or keep structure.shape_change = \"attached\""
+    )]
+    ShapeChangeOnHalf,
+    /// Triangles longer than half a wave.
+    #[error(
+        "at |p| = {largest} triangle {triangle}, {length:.4} m long in the stream, sees {phase:.2} rad of the wave that motion leaves, more than half a wave: the forces would be meaningless; refine the mesh or lower the largest k"
+    )]
+    PhasePerPanel {
+        /// Largest |p| asked for.
+        largest: f64,
+        /// Mesh triangle.
+        triangle: usize,
+        /// Its extent along the stream, m.
+        length: f64,
+        /// Phase across it, rad.
+        phase: f64,
+    },
     /// Sideslip on a half model.
     #[error(
         "a half model has its stream in the plane of symmetry, but β = {beta_deg}°; mesh the whole aircraft for sideslip"
@@ -30,9 +49,9 @@ pub enum BemError {
         /// Sideslip, °.
         beta_deg: f64,
     },
-    /// The triangles at a trailing-edge vertex do not fall into two sides.
+    /// The trailing edges at a vertex do not divide its triangles into as many sides.
     #[error(
-        "the triangles at trailing-edge vertex {vertex} (at {x:.4}, {y:.4}, {z:.4} m) fall into {groups} groups instead of an upper and a lower one, so the wake jump has no meaning there; trailing edges that join or branch in one vertex are not handled: separate them or name the edges by curve groups"
+        "the {edges} edges along which the potential jumps at trailing-edge vertex {vertex} (at {x:.4}, {y:.4}, {z:.4} m) divide its triangles into {groups} parts, so the wake jump has no meaning there; two surfaces that touch in one vertex must be separated, or the edges named by curve groups"
     )]
     TrailingFan {
         /// Mesh vertex.
@@ -43,26 +62,24 @@ pub enum BemError {
         y: f64,
         /// Position.
         z: f64,
-        /// Groups found.
+        /// Edges that meet there.
+        edges: usize,
+        /// Parts found.
         groups: usize,
-    },
-    /// The line along which a wake lies on a body runs into another trailing edge.
-    #[error(
-        "the wake's inner edge, followed along the body from the junction at vertex {junction}, meets another trailing edge at vertex {vertex}; give the line by wake.body_lines"
-    )]
-    PathMeetsTrailingEdge {
-        /// Vertex where the trailing edge ends on the body.
-        junction: u32,
-        /// Vertex where the lines meet.
-        vertex: u32,
     },
     /// The body line could not be followed downstream.
     #[error(
-        "no line along the body could be followed downstream from the junction at vertex {junction}; name it by wake.body_lines"
+        "no line of mesh edges runs downstream along the body from the junction at vertex {junction} (at {x:.4}, {y:.4}, {z:.4} m); name one by wake.body_lines, or refine the mesh there"
     )]
     PathNotFound {
         /// Vertex where the trailing edge ends on the body.
         junction: u32,
+        /// Position.
+        x: f64,
+        /// Position.
+        y: f64,
+        /// Position.
+        z: f64,
     },
     /// A named body line does not run downstream.
     #[error(
@@ -76,13 +93,33 @@ pub enum BemError {
     },
     /// The wake's upper and lower sides cannot be told apart along the body line.
     #[error(
-        "the triangles at vertex {vertex} of the wake's line along the body fall into {groups} groups instead of two"
+        "the triangles at vertex {vertex} (at {x:.4}, {y:.4}, {z:.4} m) of the wake's line along the body have no upper and lower side: the surface is open or touches itself there; name another line by wake.body_lines"
     )]
     PathFan {
         /// Mesh vertex.
         vertex: u32,
-        /// Groups found.
-        groups: usize,
+        /// Position.
+        x: f64,
+        /// Position.
+        y: f64,
+        /// Position.
+        z: f64,
+    },
+    /// A sheet of the wake enters a body.
+    #[error(
+        "the wake of trailing edge {edge} strikes the body: the sheet that starts at vertex {start} ({:.4}, {:.4}, {:.4} m) enters triangle {triangle} at ({:.4}, {:.4}, {:.4}) m; lead it past by wake.direction or another incidence, or move the surfaces apart", from[0], from[1], from[2], at[0], at[1], at[2]
+    )]
+    WakeStrikes {
+        /// Number of the trailing edge.
+        edge: usize,
+        /// Mesh vertex where a streamline at the cut starts.
+        start: u32,
+        /// Its position, m.
+        from: [f64; 3],
+        /// Triangle of the mesh.
+        triangle: u32,
+        /// Where it is struck, m.
+        at: [f64; 3],
     },
     /// The influence matrix has no usable factorisation.
     #[error(

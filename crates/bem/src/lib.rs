@@ -12,21 +12,29 @@
 //! | module | idea |
 //! |---|---|
 //! | `panels` | influence of flat triangles |
-//! | `adjacency`, `body_path`, `cut` | surface cut open along trailing edges and body lines |
-//! | `stations`, `wake`, `wake_builder` | the sheet and what jump it carries |
+//! | `adjacency`, `cut` | surface cut open along trailing edges |
+//! | `body_path`, `body_trace`, `body_node`, `carry` | lines that carry a jump down a body |
+//! | `stations`, `wake`, `wake_builder`, `sheet_lines`, `wake_sheet` | the sheet and what jump it carries |
+//! | `strike` | sheets that run into bodies |
 //! | `contour`, `far_wake` | its semi-infinite part on a path in the complex plane |
 //! | `galerkin`, `near_field`, `dense` | the equations and their factorisation |
 //! | `image` | half models |
+//! | `guards` | what the mesh resolves |
 //! | `onset`, `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
+//! | `shape_change` | elastic columns with the influences of the deformed surface |
 //! | `prepare`, `surface_flow` | factorised body and steady flow; pressures for pictures |
+//! | `trefftz` | induced drag from the wake far downstream |
 //! | `wake_influence`, `reduce`, `blocks`, `transfer`, `solve` | the reduced model |
 //!
 //! Nothing here knows about files, clocks or terminals.
 
 mod adjacency;
 mod blocks;
+mod body_node;
 mod body_path;
+mod body_trace;
 mod boundary;
+mod carry;
 mod contour;
 mod cut;
 mod dense;
@@ -35,6 +43,7 @@ mod direct;
 mod error;
 mod far_wake;
 mod galerkin;
+mod guards;
 mod image;
 mod near_field;
 mod onset;
@@ -43,19 +52,27 @@ mod prepare;
 mod pressure;
 mod progress;
 mod reduce;
+mod shape_change;
+mod sheet_lines;
 mod solve;
 mod stations;
 mod steady;
+mod strike;
 mod surface_flow;
 mod transfer;
+mod trefftz;
 mod wake;
 mod wake_builder;
 mod wake_influence;
+mod wake_sheet;
 
 pub use error::{BemError, LaplaceError};
 pub use fladder_mesh::Symmetry;
+pub use guards::guards;
 pub use progress::{Progress, Silent};
+pub use shape_change::ShapeChange;
 pub use solve::{Flow, Plan, Problem, Sizes, Solution, WakeDirection, plan, solve};
 pub use steady::{Loads, OnsetForm, SpanwiseJump, SteadyState};
 pub use surface_flow::{SurfaceFlow, UnsteadyPressure, surface_flow};
 pub use transfer::TransferModel;
+pub use wake_sheet::{JunctionLine, WakeSheet};

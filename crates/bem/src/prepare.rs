@@ -8,6 +8,7 @@ use crate::galerkin::Galerkin;
 use crate::image::Image;
 use crate::onset::OnsetBasis;
 use crate::progress::Progress;
+use crate::shape_change::{ShapeChange, check_symmetry, correct_potentials};
 use crate::solve::{Problem, check, lay_out};
 use crate::steady::UnitOnsets;
 use crate::transfer::solve_complex;
@@ -43,6 +44,7 @@ impl Prepared<DenseOperator> {
         progress: &dyn Progress,
     ) -> Result<Self, BemError> {
         check(problem)?;
+        check_symmetry(problem)?;
         let (surface, wake) = lay_out(problem)?;
         let selector = selector(&surface);
         let symmetry = problem.symmetry;
@@ -69,14 +71,18 @@ impl Prepared<DenseOperator> {
             drop(steady);
             (Body::factorise(galerkin, &sources, progress)?, onsets)
         };
-        Ok(Self {
+        let mut prepared = Self {
             surface,
             wake,
             selector,
             fields,
             body,
             onsets,
-        })
+        };
+        if problem.shape_change == ShapeChange::Exact {
+            correct_potentials(&mut prepared, problem, progress)?;
+        }
+        Ok(prepared)
     }
 
     /// Frees the operator's memory.
@@ -171,7 +177,7 @@ impl Body<DenseOperator> {
             jumps = Mat::from_fn(n, 3, |i, j| solved[(i, j)].re);
             phi += &response * &jumps;
         }
-        Ok(UnitOnsets::new(&self.galerkin, wake, &phi, jumps))
+        Ok(UnitOnsets::new(&self.galerkin, wake, phi, jumps))
     }
 }
 

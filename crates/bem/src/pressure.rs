@@ -24,6 +24,7 @@
 
 use crate::boundary::ModeFields;
 use crate::galerkin::Galerkin;
+use crate::shape_change::{ShapeChange, metric_change};
 use crate::steady::UnitOnsets;
 use crate::wake::Wake;
 use faer::Mat;
@@ -61,6 +62,7 @@ impl Functionals {
         fields: &ModeFields,
         onsets: &UnitOnsets,
         wake: &Wake,
+        shape: ShapeChange,
     ) -> Self {
         let (m, onset_count) = (fields.count, fields.basis.len());
         let square = |count: usize| vec![Mat::zeros(m, m); count];
@@ -79,6 +81,7 @@ impl Functionals {
                 axes: &axes,
                 velocities: axes.iter().map(|axis| onsets.velocity(t, *axis)).collect(),
                 t,
+                shape,
             };
             here.add_potential(&mut functionals);
             here.add_motion(&mut functionals);
@@ -110,6 +113,7 @@ struct Triangle<'a> {
     /// V₀ of each unit onset.
     velocities: Vec<Vec3>,
     t: usize,
+    shape: ShapeChange,
 }
 
 impl Triangle<'_> {
@@ -146,7 +150,7 @@ impl Triangle<'_> {
                     out.c1[a][(i, k)] += area * sum;
                 }
                 for b in 0..onset_count {
-                    let convected = slip.dot(&fields.convected(b, k, t));
+                    let convected = self.convection(k, a, b);
                     for i in 0..fields.count {
                         out.c0[a * onset_count + b][(i, k)] +=
                             area * fields.mean_normal(i, t) * convected;
@@ -154,6 +158,18 @@ impl Triangle<'_> {
                 }
             }
         }
+    }
+
+    /// (U − V₀)·∂u for the onsets a of V₀ and b of U, or its exact form.
+    fn convection(&self, mode: usize, a: usize, b: usize) -> f64 {
+        let (fields, t) = (self.fields, self.t);
+        if self.shape == ShapeChange::Exact && fields.turning[mode] {
+            let velocities = (self.velocities[a], self.velocities[b]);
+            let onset = self.axes[b];
+            return metric_change(self.galerkin, fields, mode, t, velocities, onset);
+        }
+        let slip = self.axes[a] - self.velocities[a];
+        slip.dot(&fields.convected(b, mode, t))
     }
 
     /// The steady pressure on the turned and stretched surface, −½ c_p0 δ(n dS)·u_i.

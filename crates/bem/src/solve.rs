@@ -8,9 +8,11 @@ use crate::prepare::{Prepared, concatenate};
 use crate::pressure::Functionals;
 use crate::progress::Progress;
 use crate::reduce::Reduction;
+use crate::shape_change::ShapeChange;
 use crate::steady::{SteadyReport, SteadyState};
 use crate::transfer::TransferModel;
 use crate::wake::{Wake, cut_and_wake};
+use crate::wake_sheet::WakeSheet;
 use faer::Mat;
 use fladder_mesh::{SurfaceMode, Symmetry, TrailingEdge, TriMesh, Vec3};
 use serde::{Deserialize, Serialize};
@@ -60,6 +62,8 @@ pub struct Problem<'a> {
     /// Columns in which the steady pressure turns and stretches with the surface: elastic
     /// modes. May be empty for none.
     pub turning: &'a [bool],
+    /// How columns with turning follow the shape.
+    pub shape_change: ShapeChange,
     /// Incidence.
     pub flow: Flow,
     /// Wake direction.
@@ -88,6 +92,7 @@ impl<'a> Problem<'a> {
             trailing_edges,
             modes,
             turning: &[],
+            shape_change: ShapeChange::Attached,
             flow: Flow::default(),
             wake_direction: WakeDirection::Freestream,
             body_lines: &[],
@@ -137,6 +142,8 @@ pub struct Plan {
     /// Floating-point work in units of one panel evaluation and one multiply-add, made
     /// into seconds on `cores` cores by measured rates.
     pub core_seconds: f64,
+    /// The wake's near part, to be looked at.
+    pub wake: WakeSheet,
     /// Things the user should know.
     pub notes: Vec<String>,
 }
@@ -191,6 +198,7 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
             + far * SECONDS_PER_FAR_NODE
             + flops / FLOPS_PER_SECOND,
         sizes,
+        wake: wake.sheet,
         notes: wake.notes,
     })
 }
@@ -273,6 +281,7 @@ pub fn solve(problem: &Problem<'_>, progress: &dyn Progress) -> Result<Solution,
         &prepared.fields,
         &prepared.onsets,
         &prepared.wake,
+        problem.shape_change,
     );
     let parts: Vec<&Mat<f64>> = std::iter::once(&prepared.selector)
         .chain(&functionals.p0)

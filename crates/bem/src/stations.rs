@@ -1,8 +1,9 @@
 //! Streamwise stations of the wake's near rows.
 //!
 //! The first row is as long as the last chordwise cell; rows grow by about 1.2 up to a
-//! largest length, and vertices of body lines are stations, so that the sheet's inner
-//! edge lies on the body.
+//! largest length. A line of the sheet has points of its own besides: the vertices of a
+//! body line, also where they follow each other closely at a tail. An inner edge that cuts
+//! such a corner runs inside the body and puts c_p = −100 beside it.
 
 /// Growth of row length with distance: h(ξ) = h₀ + 0.2 ξ is a ratio of 1.2.
 const GROWTH: f64 = 0.2;
@@ -11,10 +12,8 @@ const GROWTH: f64 = 0.2;
 /// of Q is 1e-3 at k = 0.2 and 3e-3 at k = 1 with rows of 0.2 b.
 const LONGEST_ROW: f64 = 0.2;
 
-/// Stations closer than this part of a row are one. Body vertices must be stations, also
-/// where they follow each other closely at a tail: an inner edge that cuts such a corner
-/// runs inside the body and puts c_p = −100 beside it.
-const CLOSE: f64 = 1e-3;
+/// Stations closer than this part of a row to a point of a line's own are left out there.
+const CLOSE: f64 = 0.3;
 
 /// Row length as a function of distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +31,7 @@ impl RowLaw {
         }
     }
 
-    fn length(&self, xi: f64) -> f64 {
+    pub(crate) fn length(&self, xi: f64) -> f64 {
         (self.first + GROWTH * xi).min(self.longest)
     }
 
@@ -59,34 +58,34 @@ impl RowLaw {
     }
 }
 
-/// Stations from 0 to `end`, through all of `fixed` and the `wanted` ones that are not
-/// too close to another.
-pub(crate) fn stations(law: RowLaw, wanted: &[f64], fixed: &[f64], end: f64) -> Vec<f64> {
-    let mut knots: Vec<f64> = fixed
+/// Stations from 0 to `end`.
+pub(crate) fn stations(law: RowLaw, end: f64) -> Vec<f64> {
+    let rows = law.rows(end);
+    let pieces = (rows - 1e-9).ceil().max(1.0) as usize;
+    let mut all: Vec<f64> = (0..pieces)
+        .map(|i| law.distance(rows * i as f64 / pieces as f64))
+        .collect();
+    all.push(end);
+    all
+}
+
+/// The stations behind a line's first own point (`own` ascending) that are not close to
+/// one of its own; the last station always.
+pub(crate) fn between(law: RowLaw, own: &[f64], stations: &[f64]) -> Vec<f64> {
+    let Some((&end, inner)) = stations.split_last() else {
+        return Vec::new();
+    };
+    let is_apart = |x: f64| {
+        let gap = CLOSE * law.length(x);
+        let next = own.partition_point(|o| *o < x);
+        next > 0 && x - own[next - 1] > gap && own.get(next).is_none_or(|o| o - x > gap)
+    };
+    inner
         .iter()
         .copied()
-        .filter(|&x| x > 0.0 && x < end)
-        .collect();
-    knots.push(0.0);
-    knots.push(end);
-    for &x in wanted {
-        let gap = CLOSE * law.length(x);
-        if x > 0.0 && x < end && knots.iter().all(|k| (k - x).abs() > gap) {
-            knots.push(x);
-        }
-    }
-    knots.sort_by(f64::total_cmp);
-    knots.dedup_by(|b, a| *b - *a < 1e-9 * end);
-    let mut all = vec![0.0];
-    for pair in knots.windows(2) {
-        let [from, to] = [law.rows(pair[0]), law.rows(pair[1])];
-        let pieces = (to - from - 1e-9).ceil().max(1.0) as usize;
-        for i in 1..pieces {
-            all.push(law.distance(from + (to - from) * i as f64 / pieces as f64));
-        }
-        all.push(pair[1]);
-    }
-    all
+        .filter(|&x| is_apart(x))
+        .chain([end])
+        .collect()
 }
 
 #[cfg(test)]
@@ -96,13 +95,18 @@ mod tests {
     #[test]
     fn rows_start_with_the_first_length_and_never_exceed_the_longest() {
         let law = RowLaw::new(0.01, 0.5);
-        let all = stations(law, &[0.3, 0.31, 0.310_01], &[0.7], 2.0);
-        assert!(all.contains(&0.7) && all.contains(&0.3) && all.contains(&0.31));
-        assert!(!all.contains(&0.310_01));
-        assert!(all[1] <= 0.0125 && all.last() == Some(&2.0));
+        let all = stations(law, 2.0);
+        assert!(all[0] == 0.0 && all[1] <= 0.0125 && all.last() == Some(&2.0));
         for pair in all.windows(2) {
             let row = pair[1] - pair[0];
             assert!(row > 0.0 && row <= 0.1 * 1.0001, "{pair:?}");
         }
+    }
+
+    #[test]
+    fn stations_close_to_a_lines_own_points_are_left_out() {
+        let law = RowLaw::new(0.1, 0.5);
+        let line = between(law, &[0.32, 0.33, 0.5], &[0.0, 0.1, 0.3, 0.4, 0.52, 0.6]);
+        assert_eq!(line, [0.4, 0.6]);
     }
 }

@@ -7,6 +7,8 @@
 use crate::boundary::ModeFields;
 use crate::cut::CutSurface;
 use crate::galerkin::Galerkin;
+use crate::image::{mirrored, on_plane};
+use crate::trefftz::induced_drag;
 use crate::wake::Wake;
 use faer::Mat;
 use fladder_mesh::{Symmetry, Vec3};
@@ -19,6 +21,8 @@ pub(crate) struct UnitOnsets {
     pub(crate) velocities: Vec<[Vec3; 3]>,
     /// κ₀: columns × 3.
     pub(crate) jumps: Mat<f64>,
+    /// φ₀ without the jumps carried on bodies: vertices × 3.
+    pub(crate) potentials: Mat<f64>,
 }
 
 impl UnitOnsets {
@@ -26,7 +30,7 @@ impl UnitOnsets {
     pub(crate) fn new(
         galerkin: &Galerkin,
         wake: &Wake,
-        potentials: &Mat<f64>,
+        potentials: Mat<f64>,
         jumps: Mat<f64>,
     ) -> Self {
         let carried = carried_jumps(galerkin, wake, &jumps);
@@ -46,7 +50,11 @@ impl UnitOnsets {
                 })
             })
             .collect();
-        Self { velocities, jumps }
+        Self {
+            velocities,
+            jumps,
+            potentials,
+        }
     }
 
     /// V₀ on a triangle for the onset `stream`.
@@ -64,13 +72,12 @@ fn carried_jumps(
 ) -> std::collections::HashMap<(u32, usize), [f64; 3]> {
     let mut carried = std::collections::HashMap::new();
     for (triangle, corner, slot) in wake.body_corners() {
-        let mut value = [0.0; 3];
+        let value = carried.entry((triangle, corner)).or_insert([0.0; 3]);
         for &(column, weight) in &wake.threads[wake.slots[slot].thread] {
             for (axis, v) in value.iter_mut().enumerate() {
                 *v += weight * jumps[(column, axis)];
             }
         }
-        carried.insert((triangle, corner), value);
     }
     debug_assert!(
         carried
@@ -117,6 +124,9 @@ pub struct SteadyState {
     /// and Joukowski), m²: beside the pressure's it shows how well the mesh resolves
     /// the flow.
     pub lift_by_wake_jump: f64,
+    /// Induced drag per q∞ from the energy the wake leaves far downstream, m²; none where
+    /// the sheet has a free edge with a jump.
+    pub induced_drag: Option<f64>,
     /// Lift per q∞ from the pressure, perpendicular to the stream, m².
     pub lift_by_pressure: f64,
     /// Lowest pressure coefficient and the triangle it is on.
@@ -184,6 +194,7 @@ impl SteadyReport<'_> {
         let mut state = SteadyState {
             stream: self.stream.into(),
             lift_by_wake_jump: self.wake_lift(),
+            induced_drag: self.induced_drag(),
             wake_jumps,
             loads: Loads {
                 force: [0.0; 3],
@@ -272,22 +283,19 @@ impl SteadyReport<'_> {
     }
 
     fn spanwise(&self, c: usize, chain: &fladder_mesh::TrailingEdge) -> SpanwiseJump {
-        let columns = &self.surface.chain_columns[c];
-        let jumps = columns
+        let jumps = self.surface.chain_jumps[c]
             .iter()
-            .map(|column| column.map_or(0.0, |j| self.column_jump(j)))
+            .map(|jump| jump.iter().map(|&(j, w)| w * self.column_jump(j)).sum())
             .collect();
         let positions = chain
             .vertices
             .iter()
             .map(|&v| self.surface.vertices[v as usize].into())
             .collect();
-        let on_body = [columns.first(), columns.last()]
-            .map(|end| !chain.closed && end.is_some_and(Option::is_some));
         SpanwiseJump {
             positions,
             jumps,
-            on_body,
+            on_body: self.surface.on_body[c],
         }
     }
 
@@ -295,12 +303,7 @@ impl SteadyReport<'_> {
     fn wake_lift(&self) -> f64 {
         let lift = self.lift_direction();
         let far = &self.wake.far;
-        let jump = |line: u32| -> f64 {
-            self.wake.threads[self.wake.far_threads[line as usize]]
-                .iter()
-                .map(|&(column, weight)| weight * self.column_jump(column))
-                .sum()
-        };
+        let jump = |line: u32| self.far_jump(line);
         let sum: f64 = far
             .strips
             .iter()
@@ -314,6 +317,39 @@ impl SteadyReport<'_> {
         } else {
             2.0 * sum
         }
+    }
+
+    /// Of the whole far sheet; a half model's image goes on from the lines on the plane.
+    fn induced_drag(&self) -> Option<f64> {
+        let mut far = self.wake.far.clone();
+        let mut source: Vec<u32> = (0..far.anchors.len() as u32).collect();
+        if self.symmetry != Symmetry::None {
+            let image: Vec<u32> = source
+                .clone()
+                .into_iter()
+                .map(|line| {
+                    let anchor = far.anchors[line as usize];
+                    if on_plane(&anchor) {
+                        return line;
+                    }
+                    far.anchors.push(mirrored(&anchor));
+                    source.push(line);
+                    source.len() as u32 - 1
+                })
+                .collect();
+            for [a, b] in self.wake.far.strips.iter().copied() {
+                far.strips.push([image[b as usize], image[a as usize]]);
+            }
+        }
+        induced_drag(&far, |line| self.far_jump(source[line as usize]))
+    }
+
+    /// κ₀ of a streamline of the far sheet.
+    fn far_jump(&self, line: u32) -> f64 {
+        self.wake.threads[self.wake.far_threads[line as usize]]
+            .iter()
+            .map(|&(column, weight)| weight * self.column_jump(column))
+            .sum()
     }
 
     fn column_jump(&self, column: usize) -> f64 {

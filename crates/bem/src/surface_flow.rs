@@ -179,19 +179,18 @@ fn carried<O>(
     s: c64,
 ) -> HashMap<(u32, usize), Vec<c64>> {
     let wake = &prepared.wake;
-    wake.body_corners()
-        .map(|(triangle, corner, slot)| {
-            let slot = wake.slots[slot];
-            let decay = (-s * slot.xi).exp();
-            let values = (0..jumps.ncols())
-                .map(|mode| {
-                    wake.threads[slot.thread]
-                        .iter()
-                        .map(|&(column, weight)| weight * decay * jumps[(column, mode)])
-                        .sum()
-                })
-                .collect();
-            ((triangle, corner), values)
-        })
-        .collect()
+    let mut carried: HashMap<(u32, usize), Vec<c64>> = HashMap::new();
+    for (triangle, corner, slot) in wake.body_corners() {
+        let slot = wake.slots[slot];
+        let decay = (-s * slot.xi).exp();
+        let values = carried
+            .entry((triangle, corner))
+            .or_insert_with(|| vec![c64::new(0.0, 0.0); jumps.ncols()]);
+        for (mode, value) in values.iter_mut().enumerate() {
+            for &(column, weight) in &wake.threads[slot.thread] {
+                *value += weight * decay * jumps[(column, mode)];
+            }
+        }
+    }
+    carried
 }

@@ -11,7 +11,9 @@ use crate::cut::CutSurface;
 use crate::error::BemError;
 use crate::far_wake::FarWake;
 use crate::panels::PanelSet;
+use crate::strike::Strikes;
 use crate::wake_builder::Builder;
+use crate::wake_sheet::WakeSheet;
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
 
 /// Marks a corner whose jump is zero.
@@ -61,6 +63,8 @@ pub(crate) struct Wake {
     /// Warnings for the user.
     pub(crate) notes: Vec<String>,
     pub(crate) stations: usize,
+    /// The near part as it is seen.
+    pub(crate) sheet: WakeSheet,
 }
 
 impl Wake {
@@ -99,6 +103,14 @@ pub(crate) fn cut_and_wake(
     };
     let paths = tracer.trace()?;
     let surface = CutSurface::new(mesh, &adjacency, chains, &paths, half)?;
-    let wake = Builder::new(mesh, chains, &surface, &paths, direction, semichord, half).build();
+    let strikes = Strikes {
+        mesh,
+        adjacency: &adjacency,
+        chains,
+        paths: &paths,
+        direction,
+    };
+    let wake = Builder::new(mesh, chains, &surface, &paths, direction, semichord, half)
+        .build(&strikes)?;
     Ok((surface, wake))
 }

@@ -1,54 +1,60 @@
 //! Lays the wake out: lines of the sheet, strips between them, corners on the body.
 //!
 //! Every trailing-edge vertex has a line along the stream; the line of a junction follows
-//! the body to the tail, and lines start where body lines meet. Neighbouring lines span
-//! strips: triangles up to the last station, then a strip of the far part.
+//! the body to its end, and lines start where body lines are led over a base. Neighbouring
+//! lines span strips: triangles up to the last station, then a strip of the far part.
+//!
+//! Distances ξ count from the vertex where a jump starts. Where a sheet carries jumps that
+//! started elsewhere too, it lies there several times, once for each origin (*copies*):
+//! influences are linear in the jump.
 
-use crate::body_path::BodyPaths;
+use crate::body_path::{BodyPaths, Finish};
 use crate::contour::Paths;
-use crate::cut::CutSurface;
+use crate::cut::{CutSurface, Jump};
+use crate::error::BemError;
 use crate::far_wake::FarWake;
 use crate::image::mirrored;
 use crate::panels::PanelSet;
+use crate::sheet_lines::{Layer, SheetLine, Source};
 use crate::stations::{RowLaw, stations};
+use crate::strike::Strikes;
 use crate::wake::{JumpSheet, NO_SLOT, Slot, Wake};
+use crate::wake_sheet::{JunctionLine, WakeSheet};
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
-use std::collections::HashMap;
-
-/// Diagonals that differ less than this are as long as each other.
-const SAME_LENGTH: f64 = 1e-9;
+use std::collections::{BTreeMap, HashMap};
 
 /// Distance of the far part behind the last body point, in semichords.
 const FAR_MARGIN: f64 = 0.6;
 
-/// A line of the sheet: its vertices from the first station on.
-struct SheetLine {
-    first_station: usize,
-    vertices: Vec<u32>,
-    far: u32,
-}
+/// Origins closer than this part of the margin are one.
+const SAME_ORIGIN: f64 = 1e-9;
 
 /// Everything of a wake while it is being laid out.
 pub(crate) struct Builder<'a> {
-    mesh: &'a TriMesh,
-    chains: &'a [TrailingEdge],
-    surface: &'a CutSurface,
-    paths: &'a BodyPaths,
-    direction: Vec3,
-    stations: Vec<f64>,
+    pub(crate) mesh: &'a TriMesh,
+    pub(crate) chains: &'a [TrailingEdge],
+    pub(crate) surface: &'a CutSurface,
+    pub(crate) paths: &'a BodyPaths,
+    pub(crate) direction: Vec3,
+    pub(crate) law: RowLaw,
+    pub(crate) stations: Vec<f64>,
     margin: f64,
     /// Whether the other half is an image.
     half: bool,
-    threads: Vec<Vec<(usize, f64)>>,
+    threads: Vec<Jump>,
+    thread_of: HashMap<Vec<(usize, u64)>, usize>,
     slots: Vec<Slot>,
     slot_of: HashMap<(usize, u64), u32>,
-    far: FarWake,
-    far_threads: Vec<usize>,
-    sheet_vertices: Vec<Vec3>,
-    sheet_triangles: Vec<[u32; 3]>,
-    sheet_slots: Vec<u32>,
-    body_corners: HashMap<u32, [u32; 3]>,
+    pub(crate) far: FarWake,
+    pub(crate) far_threads: Vec<usize>,
+    pub(crate) sheet: Layer,
     notes: Vec<String>,
+}
+
+/// Jumps that started at one distance, as weights of the lines' jumps.
+struct Origin {
+    xi: f64,
+    shares: Vec<(usize, f64)>,
 }
 
 impl<'a> Builder<'a> {
@@ -67,10 +73,12 @@ impl<'a> Builder<'a> {
             surface,
             paths,
             direction,
+            law: RowLaw::new(f64::INFINITY, semichord),
             stations: Vec::new(),
             margin: FAR_MARGIN * semichord,
             half,
             threads: Vec::new(),
+            thread_of: HashMap::new(),
             slots: Vec::new(),
             slot_of: HashMap::new(),
             far: FarWake {
@@ -79,348 +87,99 @@ impl<'a> Builder<'a> {
                 strips: Vec::new(),
             },
             far_threads: Vec::new(),
-            sheet_vertices: Vec::new(),
-            sheet_triangles: Vec::new(),
-            sheet_slots: Vec::new(),
-            body_corners: HashMap::new(),
+            sheet: Layer::default(),
             notes: Vec::new(),
         };
-        builder.stations = builder.row_stations(semichord);
+        builder.set_stations(semichord);
         builder
     }
 
-    fn position(&self, vertex: u32) -> Vec3 {
+    pub(crate) fn position(&self, vertex: u32) -> Vec3 {
         self.mesh.vertices[vertex as usize]
     }
 
-    fn row_stations(&self, semichord: f64) -> Vec<f64> {
+    fn set_stations(&mut self, semichord: f64) {
         let last_cell = self
             .chains
             .iter()
             .map(|c| self.last_cell(c))
             .fold(f64::INFINITY, f64::min);
         if !last_cell.is_finite() {
-            return Vec::new();
+            return;
         }
-        let wanted: Vec<f64> = (0..self.paths.paths.len())
-            .flat_map(|p| self.path_distances(p))
-            .collect();
-        let tails: Vec<f64> = (0..self.paths.cuts.len())
-            .map(|c| self.tail_distance(c))
-            .collect();
-        let farthest = self
+        let along = |v: &Vec3| v.dot(&self.direction);
+        let foremost = self
             .chains
             .iter()
             .flat_map(|c| &c.vertices)
-            .map(|&v| self.position(v).dot(&self.direction))
+            .map(|&v| along(&self.position(v)))
             .fold(f64::INFINITY, f64::min);
         let rear = self
             .mesh
             .vertices
             .iter()
-            .map(|v| v.dot(&self.direction))
+            .map(along)
             .fold(f64::NEG_INFINITY, f64::max);
-        let end = rear - farthest + self.margin;
-        stations(RowLaw::new(last_cell, semichord), &wanted, &tails, end)
+        self.law = RowLaw::new(last_cell, semichord);
+        self.stations = stations(self.law, rear - foremost + self.margin);
     }
 
     /// Mean height of the triangles on a trailing edge: the last chordwise cell.
     fn last_cell(&self, chain: &TrailingEdge) -> f64 {
-        let n = chain.vertices.len();
         let mut sum = 0.0;
-        for i in 0..chain.upper.len() {
-            let edge =
-                self.position(chain.vertices[(i + 1) % n]) - self.position(chain.vertices[i]);
-            for t in [chain.upper[i], chain.lower[i]] {
+        for ([a, b], (&upper, &lower)) in
+            chain.edges().zip(chain.upper.iter().zip(&chain.lower))
+        {
+            let edge = self.position(b) - self.position(a);
+            for t in [upper, lower] {
                 sum += 2.0 * self.mesh.area_vector(t as usize).norm() / edge.norm();
             }
         }
         sum / (2 * chain.upper.len()) as f64
     }
 
-    fn path_distances(&self, path: usize) -> Vec<f64> {
-        let line = &self.paths.paths[path].vertices;
-        let origin = self.position(line[0]);
-        line.iter()
-            .map(|&v| (self.position(v) - origin).dot(&self.direction))
-            .collect()
+    /// ξ of a point for the jump of a body line.
+    pub(crate) fn distance(&self, path: usize, point: Vec3) -> f64 {
+        let junction = self.position(self.paths.paths[path].vertices[0]);
+        (point - junction).dot(&self.direction)
     }
 
-    /// ξ where the wake leaves the body behind a cut.
-    fn tail_distance(&self, cut: usize) -> f64 {
-        let cut = &self.paths.cuts[cut];
-        [cut.before, cut.after]
-            .into_iter()
-            .flatten()
-            .filter_map(|p| self.path_distances(p).last().copied())
-            .fold(0.0, f64::max)
+    /// The jump that a body line carries, as weights of columns.
+    fn path_jump(&self, path: usize) -> &Jump {
+        let end = self.paths.paths[path].end;
+        let jumps = &self.surface.chain_jumps[end.chain];
+        &jumps[if end.last { jumps.len() - 1 } else { 0 }]
     }
 
-    pub(crate) fn build(mut self) -> Wake {
-        let chain_threads = self.chain_threads();
-        let bridges: Vec<Vec<usize>> = (0..self.paths.cuts.len())
-            .map(|c| self.bridge_lines(c, &chain_threads))
-            .collect();
-        let mut lines: Vec<SheetLine> = Vec::new();
-        let mut bridge_index: Vec<Vec<usize>> = Vec::new();
-        for (cut, threads) in bridges.iter().enumerate() {
-            let from = lines.len();
-            for (i, &thread) in threads.iter().enumerate() {
-                let line = self.bridge_line(cut, i, thread);
-                lines.push(line);
-            }
-            bridge_index.push((from..lines.len()).collect());
+    /// Number of the thread with this jump.
+    pub(crate) fn thread(&mut self, jump: &[(usize, f64)]) -> usize {
+        let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
+        for &(column, weight) in jump {
+            *sum.entry(column).or_insert(0.0) += weight;
         }
-        for ids in &bridge_index {
-            for pair in ids.windows(2) {
-                self.strip(&lines[pair[0]], &lines[pair[1]]);
-            }
-        }
-        for (c, threads) in chain_threads.iter().enumerate() {
-            self.chain_sheet(c, threads, &bridges, &lines, &bridge_index);
-        }
-        for (cut, threads) in bridges.iter().enumerate() {
-            self.body_jump(cut, &chain_threads, threads);
-        }
-        self.finish()
+        let jump: Jump = sum.into_iter().filter(|(_, w)| *w != 0.0).collect();
+        let key = jump.iter().map(|&(c, w)| (c, w.to_bits())).collect();
+        let threads = &mut self.threads;
+        *self.thread_of.entry(key).or_insert_with(|| {
+            threads.push(jump);
+            threads.len() - 1
+        })
     }
 
-    fn chain_threads(&mut self) -> Vec<Vec<usize>> {
-        let columns = &self.surface.chain_columns;
-        columns
+    /// Thread of a sum of body lines' jumps.
+    fn shared_thread(&mut self, shares: &[(usize, f64)]) -> usize {
+        let jump: Jump = shares
             .iter()
-            .map(|chain| {
-                chain
+            .flat_map(|&(path, share)| {
+                self.path_jump(path)
                     .iter()
-                    .map(|column| {
-                        self.threads
-                            .push(column.iter().map(|&c| (c, 1.0)).collect());
-                        self.threads.len() - 1
-                    })
-                    .collect()
-            })
-            .collect()
-    }
-
-    fn junction_column(&self, path: usize) -> usize {
-        let end = self.paths.paths[path].end;
-        let columns = &self.surface.chain_columns[end.chain];
-        let index = if end.last { columns.len() - 1 } else { 0 };
-        columns[index].expect("a junction vertex is doubled")
-    }
-
-    fn junction_thread(&self, path: usize, chain_threads: &[Vec<usize>]) -> usize {
-        let end = self.paths.paths[path].end;
-        let threads = &chain_threads[end.chain];
-        if end.last {
-            threads[threads.len() - 1]
-        } else {
-            threads[0]
-        }
-    }
-
-    /// Threads of the vertices where two body lines meet; none for a line alone.
-    fn bridge_lines(&mut self, cut: usize, chain_threads: &[Vec<usize>]) -> Vec<usize> {
-        let body_cut = &self.paths.cuts[cut];
-        let (Some(before), Some(after)) = (body_cut.before, body_cut.after) else {
-            return Vec::new();
-        };
-        let last = body_cut.bridge.len() - 1;
-        (0..=last)
-            .map(|i| {
-                if last > 0 && i == 0 {
-                    return self.junction_thread(before, chain_threads);
-                }
-                if last > 0 && i == last {
-                    return self.junction_thread(after, chain_threads);
-                }
-                let share = if last == 0 {
-                    0.5
-                } else {
-                    i as f64 / last as f64
-                };
-                let (a, b) = (self.junction_column(before), self.junction_column(after));
-                self.threads.push(vec![(a, 1.0 - share), (b, share)]);
-                self.threads.len() - 1
-            })
-            .collect()
-    }
-
-    fn bridge_line(&mut self, cut: usize, i: usize, thread: usize) -> SheetLine {
-        let vertex = self.paths.cuts[cut].bridge[i];
-        let tail = self.tail_distance(cut);
-        let anchor = self.position(vertex) - tail * self.direction;
-        let first_station = self.station_at(tail);
-        let points = self.along(anchor, first_station);
-        let far = self.far_line(anchor, thread);
-        self.line(first_station, points, |_| thread, far)
-    }
-
-    /// Index of the station at ξ, which is one of them.
-    fn station_at(&self, xi: f64) -> usize {
-        self.stations
-            .partition_point(|x| *x < xi - 1e-9 * self.margin)
-    }
-
-    fn far_line(&mut self, anchor: Vec3, thread: usize) -> u32 {
-        self.far.anchors.push(anchor);
-        self.far_threads.push(thread);
-        self.far.anchors.len() as u32 - 1
-    }
-
-    fn chain_sheet(
-        &mut self,
-        c: usize,
-        threads: &[usize],
-        bridges: &[Vec<usize>],
-        bridge_lines: &[SheetLine],
-        bridge_index: &[Vec<usize>],
-    ) {
-        let chain = &self.chains[c];
-        let n = chain.vertices.len();
-        let mut lines = Vec::with_capacity(n);
-        for (i, &thread) in threads.iter().enumerate() {
-            let path = self
-                .paths
-                .paths
-                .iter()
-                .position(|p| p.end.chain == c && i == if p.end.last { n - 1 } else { 0 });
-            let line = match path {
-                Some(path) => {
-                    self.junction_line(path, thread, bridges, bridge_lines, bridge_index)
-                }
-                None => self.straight_line(chain.vertices[i], thread),
-            };
-            lines.push(line);
-        }
-        for i in 0..chain.upper.len() {
-            let (a, b) = (&lines[i], &lines[(i + 1) % n]);
-            self.strip(a, b);
-        }
-    }
-
-    fn straight_line(&mut self, vertex: u32, thread: usize) -> SheetLine {
-        let anchor = self.position(vertex);
-        let points = self.along(anchor, 0);
-        let far = self.far_line(anchor, thread);
-        self.line(0, points, |_| thread, far)
-    }
-
-    /// Points on a streamline at the stations from `first` on.
-    fn along(&self, anchor: Vec3, first: usize) -> Vec<Vec3> {
-        self.stations[first..]
-            .iter()
-            .map(|xi| anchor + *xi * self.direction)
-            .collect()
-    }
-
-    fn line(
-        &mut self,
-        first_station: usize,
-        points: Vec<Vec3>,
-        thread_at: impl Fn(usize) -> usize,
-        far: u32,
-    ) -> SheetLine {
-        let from = self.sheet_vertices.len() as u32;
-        for r in first_station..self.stations.len() {
-            let slot = self.slot(thread_at(r), self.stations[r]);
-            self.sheet_slots.push(slot);
-        }
-        self.sheet_vertices.extend(points);
-        let vertices = (from..self.sheet_vertices.len() as u32).collect();
-        SheetLine {
-            first_station,
-            vertices,
-            far,
-        }
-    }
-
-    /// The sheet's inner edge: along the body to the tail, then straight on.
-    fn junction_line(
-        &mut self,
-        path: usize,
-        thread: usize,
-        bridges: &[Vec<usize>],
-        bridge_lines: &[SheetLine],
-        bridge_index: &[Vec<usize>],
-    ) -> SheetLine {
-        let (cut, is_before) = self
-            .paths
-            .cuts
-            .iter()
-            .enumerate()
-            .find_map(|(c, cut)| {
-                (cut.before == Some(path))
-                    .then_some((c, true))
-                    .or((cut.after == Some(path)).then_some((c, false)))
-            })
-            .expect("every path belongs to a cut");
-        let tail = self.tail_distance(cut);
-        let vertices = self.paths.paths[path].vertices.clone();
-        let mut knots = self.path_distances(path);
-        if let Some(last) = knots.last_mut() {
-            *last = tail;
-        }
-        let end = self.position(vertices[vertices.len() - 1]) - tail * self.direction;
-        let (far_thread, far) = if bridges[cut].is_empty() {
-            self.notes.push(format!(
-                "the wake's inner edge from the junction at vertex {} ends alone on the body, at vertex {}: behind it the sheet has a free edge with the junction's jump",
-                vertices[0],
-                vertices[vertices.len() - 1]
-            ));
-            (thread, self.far_line(end, thread))
-        } else {
-            let i = if is_before { 0 } else { bridges[cut].len() - 1 };
-            (bridges[cut][i], bridge_lines[bridge_index[cut][i]].far)
-        };
-        let tail_station = self.station_at(tail);
-        let points = self
-            .stations
-            .iter()
-            .enumerate()
-            .map(|(r, xi)| {
-                if r < tail_station {
-                    self.on_path(&vertices, &knots, *xi)
-                } else {
-                    end + *xi * self.direction
-                }
+                    .map(move |&(column, weight)| (column, share * weight))
             })
             .collect();
-        self.line(
-            0,
-            points,
-            |r| if r < tail_station { thread } else { far_thread },
-            far,
-        )
+        self.thread(&jump)
     }
 
-    fn on_path(&self, vertices: &[u32], knots: &[f64], xi: f64) -> Vec3 {
-        let i = knots
-            .partition_point(|k| *k <= xi)
-            .clamp(1, knots.len() - 1);
-        let share = (xi - knots[i - 1]) / (knots[i] - knots[i - 1]);
-        let (a, b) = (self.position(vertices[i - 1]), self.position(vertices[i]));
-        a + share * (b - a)
-    }
-
-    /// Triangles between two lines, and their far strip.
-    fn strip(&mut self, a: &SheetLine, b: &SheetLine) {
-        let from = a.first_station.max(b.first_station);
-        for r in from..self.stations.len().saturating_sub(1) {
-            let ids = [(a, r), (a, r + 1), (b, r + 1), (b, r)]
-                .map(|(line, r)| line.vertices[r - line.first_station]);
-            let p = ids.map(|i| self.sheet_vertices[i as usize]);
-            let [i, j, k, l] = ids;
-            if first_diagonal(&p) {
-                self.sheet_triangles.extend([[i, j, k], [i, k, l]]);
-            } else {
-                self.sheet_triangles.extend([[i, j, l], [j, k, l]]);
-            }
-        }
-        self.far.strips.push([a.far, b.far]);
-    }
-
-    fn slot(&mut self, thread: usize, xi: f64) -> u32 {
+    pub(crate) fn slot(&mut self, thread: usize, xi: f64) -> u32 {
         if self.threads[thread].is_empty() {
             return NO_SLOT;
         }
@@ -434,55 +193,260 @@ impl<'a> Builder<'a> {
             })
     }
 
-    /// Slots on the upper corners of the body's triangles along a cut.
-    fn body_jump(&mut self, cut: usize, chain_threads: &[Vec<usize>], bridge: &[usize]) {
-        let body_cut = self.paths.cuts[cut].clone();
-        let tail = self.tail_distance(cut);
-        let mut slot_of_vertex: HashMap<u32, u32> = HashMap::new();
-        for path in [body_cut.before, body_cut.after].into_iter().flatten() {
-            let thread = self.junction_thread(path, chain_threads);
-            let vertices = &self.paths.paths[path].vertices;
-            let xi = self.path_distances(path);
-            for (v, xi) in vertices.iter().zip(xi).skip(1) {
-                let slot = self.slot(thread, xi);
-                slot_of_vertex.insert(*v, slot);
+    /// Sorts jumps at a point by how far they have come.
+    fn origins(&self, point: Vec3, shares: &[(usize, f64)]) -> Vec<Origin> {
+        let mut origins: Vec<Origin> = Vec::new();
+        for &(path, share) in shares {
+            let xi = self.distance(path, point);
+            let same = origins
+                .iter_mut()
+                .find(|o| (o.xi - xi).abs() < SAME_ORIGIN * self.margin);
+            match same {
+                Some(origin) => origin.shares.push((path, share)),
+                None => origins.push(Origin {
+                    xi,
+                    shares: vec![(path, share)],
+                }),
             }
         }
-        for (v, &thread) in body_cut.bridge.iter().zip(bridge) {
-            let slot = self.slot(thread, tail);
-            slot_of_vertex.insert(*v, slot);
+        origins
+    }
+
+    pub(crate) fn build(mut self, strikes: &Strikes<'_>) -> Result<Wake, BemError> {
+        for chain in 0..self.chains.len() {
+            self.chain_sheet(chain);
         }
-        for upper in &self.surface.cut_corners[cut] {
-            let Some(&slot) = slot_of_vertex.get(&upper.vertex) else {
-                continue;
+        for path in 0..self.paths.paths.len() {
+            self.base_sheet(path);
+        }
+        let close = strikes.check(&self.sheet)?;
+        self.notes.extend(close);
+        let body = self.body_jumps();
+        Ok(self.finish(body))
+    }
+
+    /// The sheet of one trailing edge, with what others add to it.
+    fn chain_sheet(&mut self, c: usize) {
+        let chain = &self.chains[c];
+        let n = chain.vertices.len();
+        let mut lines = Vec::with_capacity(n);
+        for i in 0..n {
+            let path = match (i == 0, i == n - 1) {
+                (true, _) => self.paths.of_end(c, false),
+                (_, true) => self.paths.of_end(c, true),
+                _ => None,
             };
-            for &(triangle, corner) in &upper.corners {
-                self.body_corners.entry(triangle).or_insert([NO_SLOT; 3])[corner] = slot;
+            let line = if let Some(path) = path {
+                self.junction_line(path)
+            } else {
+                let thread = self.thread(&self.surface.chain_jumps[c][i]);
+                self.free_line(self.position(chain.vertices[i]), 0.0, thread)
+            };
+            lines.push(line);
+        }
+        for i in 0..chain.upper.len() {
+            let source = Source {
+                edge: c,
+                start: chain.vertices[i],
+            };
+            self.strip([&lines[i], &lines[(i + 1) % n]], Some(source));
+        }
+        for last in [false, true] {
+            if let Some(path) = self.paths.of_end(c, last) {
+                let inner = if last { [n - 1, n - 2] } else { [0, 1] };
+                self.node_copies(path, inner.map(|i| &lines[i]));
+            }
+        }
+        for join in &self.surface.joins {
+            if join.chain == c {
+                let pair = [&lines[join.edge], &lines[(join.edge + 1) % n]];
+                let vertex = self.paths.paths[join.path].last();
+                let is_first = chain.vertices[join.edge] == vertex;
+                let sign = if join.on_upper { 1.0 } else { -1.0 };
+                let thread = self.shared_thread(&[(join.path, sign)]);
+                let shift = self.distance(join.path, self.position(vertex));
+                let none = self.thread(&[]);
+                let threads = if is_first {
+                    [thread, none]
+                } else {
+                    [none, thread]
+                };
+                let copies = [0, 1]
+                    .map(|k| self.copy(pair[k], shift, f64::NEG_INFINITY, 0.0, threads[k]));
+                self.strip([&copies[0], &copies[1]], None);
             }
         }
     }
 
-    fn finish(self) -> Wake {
+    /// The sheet's inner edge: along the body to the line's end, then straight on.
+    fn junction_line(&mut self, path: usize) -> SheetLine {
+        let line = &self.paths.paths[path];
+        // An edge across may lead back by the stream's incidence: it counts as level.
+        let knots: Vec<f64> = line.vertices[..=line.whole]
+            .iter()
+            .scan(0.0, |level: &mut f64, &v| {
+                *level = level.max(self.distance(path, self.position(v)));
+                Some(*level)
+            })
+            .collect();
+        let corners: Vec<Vec3> = line.vertices[..=line.whole]
+            .iter()
+            .map(|&v| self.position(v))
+            .collect();
+        let end = corners[line.whole];
+        if line.finish == Finish::Alone {
+            self.notes.push(format!(
+                "the wake's inner edge from the junction at vertex {} ends alone on the body, at vertex {} ({:.4}, {:.4}, {:.4} m): behind it the sheet has a free edge with the junction's jump, a vortex",
+                line.vertices[0],
+                line.last(),
+                end.x,
+                end.y,
+                end.z
+            ));
+        }
+        let whole = self.shared_thread(&[(path, 1.0)]);
+        let shares = self.paths.jump_at(path, line.whole, &self.mesh.vertices);
+        let own = self
+            .origins(end, &shares)
+            .into_iter()
+            .find(|o| o.shares.iter().any(|(p, _)| *p == path))
+            .map_or_else(Vec::new, |o| o.shares);
+        let behind = self.shared_thread(&own);
+        self.bent_line(&corners, &knots, [whole, behind])
+    }
+
+    /// Copies of the strip beside a line that ends in a node, one for each further origin.
+    fn node_copies(&mut self, path: usize, [inner, next]: [&SheetLine; 2]) {
+        let line = &self.paths.paths[path];
+        if !matches!(line.finish, Finish::Node(_)) || line.whole + 1 < line.vertices.len() {
+            return;
+        }
+        let end = self.position(line.last());
+        let own = self.distance(path, end);
+        let shares = self.paths.jump_at(path, line.whole, &self.mesh.vertices);
+        // The jump comes in over the row before the node.
+        let from = inner
+            .xi
+            .iter()
+            .copied()
+            .rfind(|&x| x < own - SAME_ORIGIN * self.margin)
+            .unwrap_or(own);
+        let none = self.thread(&[]);
+        for origin in self.origins(end, &shares) {
+            if origin.shares.iter().any(|(p, _)| *p == path) {
+                continue;
+            }
+            let thread = self.shared_thread(&origin.shares);
+            let shift = origin.xi - own;
+            let edge = self.copy(inner, shift, from, own, thread);
+            let beside = self.copy(next, shift, from, own, none);
+            let pair = if line.end.last {
+                [&beside, &edge]
+            } else {
+                [&edge, &beside]
+            };
+            self.strip(pair, None);
+        }
+    }
+
+    /// The sheet behind a line that is led over a base to a node.
+    fn base_sheet(&mut self, path: usize) {
+        let line = &self.paths.paths[path];
+        let Finish::Node(node) = line.finish else {
+            return;
+        };
+        if line.whole + 1 == line.vertices.len() {
+            return;
+        }
+        let members: Vec<(usize, f64)> = self.paths.nodes[node]
+            .paths
+            .iter()
+            .map(|&p| (p, 1.0))
+            .collect();
+        let end = self.position(line.vertices[line.whole]);
+        for origin in self.origins(end, &members) {
+            let reference = origin.shares[0].0;
+            let is_own = origin.shares.iter().any(|(p, _)| *p == path);
+            let mut lines = Vec::new();
+            for index in line.whole..line.vertices.len() {
+                let point = self.position(line.vertices[index]);
+                let jump: Vec<(usize, f64)> = self
+                    .paths
+                    .jump_at(path, index, &self.mesh.vertices)
+                    .into_iter()
+                    .filter(|(p, _)| origin.shares.iter().any(|(q, _)| p == q))
+                    .collect();
+                let thread = self.shared_thread(&jump);
+                let xi = self.distance(reference, point);
+                lines.push(self.free_line(point, xi, thread));
+            }
+            if !line.end.last {
+                lines.reverse();
+            }
+            let seen = is_own.then_some(Source {
+                edge: line.end.chain,
+                start: line.vertices[0],
+            });
+            for pair in lines.windows(2) {
+                self.strip([&pair[0], &pair[1]], seen);
+            }
+        }
+    }
+
+    /// Slots on the corners of the body's triangles, a triangle as often as one of its
+    /// corners has slots.
+    fn body_jumps(&mut self) -> Vec<(u32, [u32; 3])> {
+        let mut at: BTreeMap<(u32, usize), Vec<(usize, f64)>> = BTreeMap::new();
+        for share in &self.surface.carried {
+            at.entry((share.triangle, share.corner))
+                .or_default()
+                .push((share.path, share.weight));
+        }
+        let mut layers: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
+        for ((triangle, corner), shares) in at {
+            let point = self.mesh.corners(triangle as usize)[corner];
+            for origin in self.origins(point, &shares) {
+                let thread = self.shared_thread(&origin.shares);
+                let slot = self.slot(thread, origin.xi);
+                let own = layers.entry(triangle).or_default();
+                let free = own.iter().position(|slots| slots[corner] == NO_SLOT);
+                let layer = free.unwrap_or(own.len());
+                if layer == own.len() {
+                    own.push([NO_SLOT; 3]);
+                }
+                own[layer][corner] = slot;
+            }
+        }
+        layers
+            .into_iter()
+            .flat_map(|(t, slots)| slots.into_iter().map(move |s| (t, s)))
+            .collect()
+    }
+
+    fn visible(&self) -> WakeSheet {
+        let lines = self.paths.paths.iter().map(|path| JunctionLine {
+            edge: path.end.chain as u32,
+            vertices: path.vertices.clone(),
+        });
+        self.sheet
+            .visible(&self.stations, lines.collect(), self.direction)
+    }
+
+    fn finish(self, body: Vec<(u32, [u32; 3])>) -> Wake {
+        let visible = self.visible();
         let start = self.stations.last().copied().unwrap_or(0.0);
         let reach = self.reach();
-        let mut body: Vec<(u32, [u32; 3])> = self.body_corners.into_iter().collect();
-        body.sort_unstable();
         let body_triangles: Vec<u32> = body.iter().map(|(t, _)| *t).collect();
         let body_panels: Vec<[u32; 3]> = body_triangles
             .iter()
             .map(|&t| self.mesh.triangles[t as usize])
             .collect();
-        let corner_slots = self
-            .sheet_triangles
-            .iter()
-            .map(|t| t.map(|v| self.sheet_slots[v as usize]))
-            .collect();
         Wake {
             threads: self.threads,
             slots: self.slots,
             near: JumpSheet {
-                panels: PanelSet::new(&self.sheet_vertices, &self.sheet_triangles),
-                corner_slots,
+                panels: PanelSet::new(&self.sheet.vertices, &self.sheet.triangles),
+                corner_slots: self.sheet.corner_slots(),
                 body_triangles: Vec::new(),
             },
             body: JumpSheet {
@@ -495,6 +459,7 @@ impl<'a> Builder<'a> {
             paths: Paths::new(start, self.margin, reach),
             notes: self.notes,
             stations: self.stations.len(),
+            sheet: visible,
         }
     }
 
@@ -519,13 +484,39 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Whether the quadrangle is divided from its first to its third corner: along the shorter
-/// diagonal, and where both are as long from the upstream corner nearer to the plane
-/// y = 0, so that the sheet of a symmetric surface is symmetric.
-fn first_diagonal(p: &[Vec3; 4]) -> bool {
-    let (first, second) = ((p[0] - p[2]).norm(), (p[1] - p[3]).norm());
-    if (first - second).abs() > SAME_LENGTH * (first + second) {
-        return first < second;
+#[cfg(test)]
+mod tests {
+    use crate::{Problem, WakeDirection, plan};
+    use fladder_mesh::shapes::NacaWing;
+    use fladder_mesh::{Topology, Vec3, trailing_edge};
+
+    /// The sheet of a straight wing lies behind it, row by row, its upper side up.
+    #[test]
+    fn the_visible_wake_of_a_wing() {
+        let mesh = NacaWing::default().structured().expect("wing");
+        let edges = trailing_edge::find_by_shape(
+            &mesh,
+            &Topology::new(&mesh),
+            trailing_edge::Settings::default(),
+        );
+        let problem = Problem {
+            wake_direction: WakeDirection::X,
+            ..Problem::new(&mesh, &edges, &[], 0.5)
+        };
+        let wake = plan(&problem).expect("a wake").wake;
+        let rows = wake.row.iter().max().map_or(0, |r| r + 1);
+        assert_eq!(wake.triangles.len(), 2 * 24 * rows as usize);
+        assert_eq!(wake.edge.len(), wake.triangles.len());
+        assert!(wake.edge.iter().all(|&e| e == 0));
+        for t in &wake.triangles {
+            let [a, b, c] = t.map(|v| Vec3::from(wake.vertices[v as usize]));
+            assert!((b - a).cross(&(c - a)).z > 0.0);
+            for p in [a, b, c] {
+                assert!(p.x >= 1.0 - 1e-12 && p.x <= 1.3 + 1e-12 && p.z.abs() < 1e-12);
+            }
+        }
+        // Rows are at most 0.2 b long.
+        let phase = wake.phase_per_row(1.0, 0.5);
+        assert!(phase > 0.05 && phase <= 0.2 + 1e-9, "{phase}");
     }
-    p[0].y.abs() <= p[3].y.abs()
 }

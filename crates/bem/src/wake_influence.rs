@@ -310,21 +310,31 @@ impl<'a> Evaluator<'a> {
             &mut self.body_scratch,
             &mut self.body_values,
         );
-        let own = own.and_then(|t| {
-            let place = wake.body.body_triangles.binary_search(&(t as u32));
-            place.ok().map(|place| (t, place))
-        });
-        if let Some((triangle, place)) = own {
-            for (q, values) in self.body_values.iter_mut().enumerate() {
-                let free = self.of.free_terms[3 * triangle + q];
-                for (value, shape) in values[place].iter_mut().zip(&POINTS[q]) {
-                    *value -= free * shape;
-                }
-            }
+        if let Some(triangle) = own {
+            self.subtract_free_term(triangle);
         }
         for (q, out) in self.slots.iter_mut().enumerate() {
             wake.near.gather(&self.near_values[q], sign, out);
             wake.body.gather(&self.body_values[q], sign, out);
+        }
+    }
+
+    /// −c N^up where the points lie on a triangle whose corners carry jumps.
+    fn subtract_free_term(&mut self, triangle: usize) {
+        // A triangle is there once for each jump that a corner carries.
+        let carrying = &self.of.wake.body.body_triangles;
+        let first = carrying.partition_point(|&t| (t as usize) < triangle);
+        let same = carrying[first..]
+            .iter()
+            .take_while(|&&t| t as usize == triangle)
+            .count();
+        for (q, values) in self.body_values.iter_mut().enumerate() {
+            let free = self.of.free_terms[3 * triangle + q];
+            for corners in &mut values[first..first + same] {
+                for (value, shape) in corners.iter_mut().zip(&POINTS[q]) {
+                    *value -= free * shape;
+                }
+            }
         }
     }
 

@@ -83,6 +83,9 @@ enum Command {
         /// Write the findings to this file
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
+        /// Write surface, trailing edges and wake for ParaView into this folder
+        #[arg(long, value_name = "DIR")]
+        vtu: Option<PathBuf>,
     },
     /// Show what a finite-element result file holds
     Modes {
@@ -217,7 +220,9 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Command::Sweep { case, json, method } => {
             commands::sweep(&session, &case, json.as_deref(), method)?;
         }
-        Command::Check { input, json } => commands::check(&session, &input, json.as_deref())?,
+        Command::Check { input, json, vtu } => {
+            commands::check(&session, &input, json.as_deref(), vtu.as_deref())?;
+        }
         Command::Modes {
             file,
             geometry,

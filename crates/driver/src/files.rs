@@ -9,7 +9,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`Failure`] of kind input or output.
-pub fn write(path: &Path, content: &str) -> Result<(), Failure> {
+pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -20,7 +20,7 @@ pub fn write(path: &Path, content: &str) -> Result<(), Failure> {
         .prefix(".tmp-")
         .tempfile_in(folder)
         .map_err(failed)?;
-    file.write_all(content.as_bytes()).map_err(failed)?;
+    file.write_all(content.as_ref()).map_err(failed)?;
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

@@ -7,6 +7,7 @@ mod surface;
 mod symmetry;
 mod topology;
 pub mod trailing_edge;
+pub mod vtu;
 pub mod weld;
 pub mod write;
 

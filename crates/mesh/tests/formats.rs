@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use fladder_mesh::judge::{Settings, judge};
 use fladder_mesh::read::{Format, Loaded, ReadError, load, parse};
 use fladder_mesh::shapes::{NacaWing, icosphere};
-use fladder_mesh::{Topology, TriMesh, write};
+use fladder_mesh::{Topology, TriMesh, vtu, write};
 
 fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -286,6 +286,200 @@ fn a_written_stl_has_the_same_volume_in_single_precision() {
     assert!((back.volume() - mesh.volume()).abs() < 1e-6);
 }
 
+/// Written by VTK from the box of Gmsh, with triangles and quadrilaterals: coordinates have
+/// single precision in text and binary of either byte order.
+#[test]
+fn ply_of_vtk_gives_the_box() {
+    for name in ["box_ascii.ply", "box_little.ply", "box_big.ply"] {
+        let loaded = load(data(name), 1.0).unwrap();
+        assert_eq!(loaded.format, Format::Ply);
+        assert_is_the_box(&loaded.mesh, 1e-6);
+        assert_eq!(loaded.mesh.triangles.len(), 78 + 2 * 22);
+    }
+}
+
+/// Every way in which VTK writes numbers, of both byte orders and widths of lengths, with
+/// and without zlib. In text it writes ten digits.
+#[test]
+fn vtu_of_vtk_gives_the_box_with_groups_and_lines() {
+    let mut first: Option<TriMesh> = None;
+    for name in [
+        "box_inline.vtu",
+        "box_inline_zlib.vtu",
+        "box_raw.vtu",
+        "box_raw_zlib.vtu",
+        "box_base64.vtu",
+        "box_base64_zlib.vtu",
+        "box_ascii.vtu",
+    ] {
+        let loaded = load(data(name), 1.0).unwrap();
+        assert_eq!(loaded.format, Format::Vtu);
+        let mesh = loaded.mesh;
+        assert_is_the_box(&mesh, if name.contains("ascii") { 1e-8 } else { 1e-10 });
+        assert!(mesh.surface("group_7").is_some());
+        assert_eq!(mesh.curve("lines").unwrap().edges.len(), 2);
+        if !name.contains("ascii") {
+            assert_eq!(*first.get_or_insert_with(|| mesh.clone()), mesh, "{name}");
+        }
+    }
+}
+
+#[test]
+fn nastran_in_small_large_and_free_fields_gives_the_box() {
+    for name in ["box_small.bdf", "box_large.bdf", "box_free.bdf"] {
+        let loaded = load(data(name), 1.0).unwrap();
+        assert_eq!(loaded.format, Format::Nastran);
+        let mesh = loaded.mesh;
+        // Eight columns hold six digits.
+        let tolerance = if name.contains("small") { 1e-5 } else { 1e-9 };
+        assert_is_the_box(&mesh, tolerance);
+        assert_eq!(mesh.triangles.len(), 78 + 2 * 22);
+        assert!(mesh.surface("pshell_7").is_some());
+    }
+    // All free, a card that goes on, comments, lines for a curve group, no frame.
+    let loaded = parse_bytes(
+        b"$ comment\nGRID,1,0,0.,0.\n,0.,,\ngrid,2,,1.+0,0.,0.\nGRID,3,,0.,10.-1,0.\n\
+          CTRIA3,1,4,1,2,3 $ all\nPLOTEL,2,1,2\nCBAR,9,9,1,2,0.,0.,1.\nPSHELL,4,1,.1\n",
+    )
+    .unwrap();
+    assert!((loaded.mesh.area() - 0.5).abs() < 1e-15);
+    assert_eq!(loaded.mesh.surface("pshell_4").unwrap().triangles, [0]);
+    assert_eq!(loaded.mesh.curve("plotel").unwrap().edges, [[0, 1]]);
+    assert_eq!(loaded.notes, ["cards that are not read: 1 of CBAR"]);
+}
+
+/// The picture of a surface is a mesh again, bit for bit.
+#[test]
+fn a_written_vtu_is_read_back_bit_for_bit() {
+    let mesh = NacaWing::default().structured().unwrap();
+    let group: Vec<i32> = (0..mesh.triangles.len() as i32).map(|t| t % 3).collect();
+    let grid = vtu::Grid {
+        points: &mesh.vertices,
+        triangles: &mesh.triangles,
+        lines: &mesh.curves[0].edges,
+        cell_data: vec![vtu::Field::integers(
+            "group",
+            group
+                .iter()
+                .copied()
+                .chain(mesh.curves[0].edges.iter().map(|_| 0))
+                .collect(),
+        )],
+        ..vtu::Grid::default()
+    };
+    let mut bytes = Vec::new();
+    vtu::vtu(&mut bytes, &grid).unwrap();
+    let back = parse_bytes(&bytes).unwrap().mesh;
+    assert_eq!(
+        (&back.vertices, &back.triangles),
+        (&mesh.vertices, &mesh.triangles)
+    );
+    assert_eq!(back.curves[0].edges, mesh.curves[0].edges);
+    let second = &back.surface("group_2").unwrap().triangles;
+    assert!(second.iter().all(|t| t % 3 == 2) && second.len() == mesh.triangles.len() / 3);
+}
+
+#[test]
+fn faults_of_ply_vtu_and_nastran_are_named() {
+    let text = |name: &str| String::from_utf8(std::fs::read(data(name)).unwrap()).unwrap();
+    let ply = text("box_ascii.ply");
+    let vtu = text("box_ascii.vtu");
+    let bdf = text("box_small.bdf");
+    for (file, said) in [
+        (
+            ply.replace("vertex 48", "vertex 4000000000"),
+            "3999999999 records are announced",
+        ),
+        (
+            ply.replace("ascii 1.0", "utf 1.0"),
+            "line 2: format `utf` is not known",
+        ),
+        (ply.replace("float z", "float w"), "no coordinate `z`"),
+        (
+            ply.replace("int vertex_indices", "int strips"),
+            "no list `vertex_indices`",
+        ),
+        (
+            ply.replace("end_header\n0 0 0", "end_header\n0 x 0"),
+            "`x` is not a number",
+        ),
+        (
+            vtu.replace("UnstructuredGrid\" v", "PolyData\" v"),
+            "VTK file of type `PolyData`",
+        ),
+        (
+            vtu.replace("</VTKFile>", ""),
+            "does not end with `</VTKFile>`",
+        ),
+        (
+            vtu.replace("Name=\"types\"", "Name=\"tips\""),
+            "no array of types",
+        ),
+        (
+            vtu.replace(
+                "header_type",
+                "compressor=\"vtkLZ4DataCompressor\" header_type",
+            ),
+            "compressed by `vtkLZ4DataCompressor`, which is not read",
+        ),
+        (
+            bdf.replace("GRID    2       ", "GRID    2       7"),
+            "coordinate system `7`",
+        ),
+        (
+            bdf.replace("GRID    2 ", "GRID    1 "),
+            "line 4: node 1 is there twice",
+        ),
+        (
+            bdf.replace("CQUAD4 ", "CQUAD8 "),
+            "`CQUAD8` has nodes on its edges",
+        ),
+        (bdf.replace("ENDDATA", ""), "`BEGIN BULK` has no `ENDDATA`"),
+        (
+            bdf.replacen("     0.5\n", "     0,5\n", 1),
+            "line 4: field 6 of GRID is `0,5`, not a number",
+        ),
+        (
+            bdf.replace("BEGIN BULK", "BEGIN BULK\nINCLUDE 'wing.bdf'"),
+            "includes another one",
+        ),
+    ] {
+        let message = refusal(file.as_bytes());
+        assert!(message.contains(said), "{message} instead of {said}");
+    }
+    // A volume element by its number.
+    let points = "<Points><DataArray type=\"Float64\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1\
+                  </DataArray></Points>";
+    let cells = |kind: u8| {
+        let array = |name: &str, values: &str| {
+            format!(
+                "<DataArray type=\"Int32\" Name=\"{name}\" format=\"ascii\">{values}</DataArray>"
+            )
+        };
+        let arrays = [
+            array("connectivity", "0 1 2 3"),
+            array("offsets", "4"),
+            array("types", &kind.to_string()),
+        ];
+        format!(
+            "<VTKFile type=\"UnstructuredGrid\"><Piece>{points}<Cells>{}</Cells></Piece></VTKFile>",
+            arrays.concat()
+        )
+    };
+    let message = refusal(cells(10).as_bytes());
+    assert!(message.contains("cell 0 is of VTK type 10, which is no flat surface element"));
+    assert_eq!(
+        parse_bytes(cells(9).as_bytes())
+            .unwrap()
+            .mesh
+            .triangles
+            .len(),
+        2
+    );
+    let pixel = parse_bytes(cells(8).as_bytes()).unwrap().mesh.triangles;
+    assert_eq!(pixel, [[0, 1, 3], [0, 3, 2]]);
+}
+
 /// Message of a file that must be refused.
 fn refusal(bytes: &[u8]) -> String {
     parse_bytes(bytes).unwrap_err().to_string()
@@ -313,7 +507,7 @@ fn versions_and_elements_that_are_not_read_are_named() {
         + 8;
     other_order[at..at + 4].reverse();
     assert!(refusal(&other_order).contains("other byte order"));
-    assert!(refusal(b"ply\nformat ascii 1.0\n").contains("PLY"));
+    assert!(refusal(b"# vtk DataFile Version 3.0\n").contains("a legacy VTK file"));
     assert!(refusal(b"").contains("empty"));
     assert!(refusal(b"hello world\n").contains("none of"));
 }
@@ -414,6 +608,14 @@ fn damaged_files_never_panic() {
         "box_binary.stl",
         "box.obj",
         "box_order2.msh",
+        "box_ascii.ply",
+        "box_big.ply",
+        "box_ascii.vtu",
+        "box_inline_zlib.vtu",
+        "box_raw.vtu",
+        "box_base64_zlib.vtu",
+        "box_small.bdf",
+        "box_large.bdf",
     ]) {
         let whole = std::fs::read(data(name)).unwrap();
         for length in 0..whole.len() {

@@ -91,6 +91,20 @@ pub enum RigidBodyError {
 const TRIANGLE_SLACK: f64 = 1.0 + 1e-3;
 
 impl RigidBody {
+    /// Unit mass and moments at a point: its [`rigid_modes`] are one metre and one radian.
+    pub fn unit(cg: Vec3) -> Self {
+        Self {
+            mass: 1.0,
+            cg,
+            inertia: Inertia {
+                xx: 1.0,
+                yy: 1.0,
+                zz: 1.0,
+                xz: 0.0,
+            },
+        }
+    }
+
     /// Refuses mass properties no body can have.
     ///
     /// # Errors

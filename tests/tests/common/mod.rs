@@ -3,6 +3,7 @@
 
 use fladder_bem::{Flow, Problem, Silent, Solution, solve};
 use fladder_mesh::{Frame, SurfaceMode, Topology, TrailingEdge, TriMesh, Vec3, trailing_edge};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// A reference file of this test crate.
@@ -68,4 +69,34 @@ pub(crate) fn solved(
         ..Problem::new(mesh, edges, modes, semichord)
     };
     solve(&problem, &Silent).expect("a sound problem")
+}
+
+/// Mesh groups of the ScanEagle-like surface and the sets of its structure: skins of each side, the fuselage as one; webs, ribs and springs left out.
+pub(crate) fn scaneagle_components() -> BTreeMap<String, Vec<String>> {
+    let mut map = BTreeMap::new();
+    for (side, mark) in [("r", ""), ("l", "_P")] {
+        let mut add = |group: &str, sets: &[&str]| {
+            let sets = sets.iter().map(|set| format!("{set}{mark}")).collect();
+            map.insert(format!("{group}_{side}"), sets);
+        };
+        add(
+            "wing",
+            &["WLE", "WCAP", "WBOX", "WTE", "LLE", "LCAP", "LBOX", "LTE"],
+        );
+        add(
+            "winglet",
+            &["WLE", "WCAP", "WBOX", "WTE", "LLE", "LCAP", "LBOX", "LTE"],
+        );
+        add("elevon", &["WCS"]);
+        add("rudder", &["LCS"]);
+    }
+    let body = ["FUS", "FUSZ0", "FUSZ1", "FUSZ2", "FUSZ3"];
+    let both: Vec<String> = body
+        .iter()
+        .flat_map(|s| [(*s).to_owned(), format!("{s}_P")])
+        .collect();
+    for group in ["fuselage_r", "fuselage_l"] {
+        map.insert(group.to_owned(), both.clone());
+    }
+    map
 }

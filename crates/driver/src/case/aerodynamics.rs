@@ -139,6 +139,9 @@ pub struct AnalyticMode {
     pub rotation: Option<Rotation>,
     /// Sum of polynomial terms.
     pub polynomial: Option<Vec<Term>>,
+    /// Surface groups of the mesh that it moves, a control for example; left
+    /// out: the whole surface.
+    pub group: Option<OneOrMany<String>>,
 }
 
 /// An axis of rotation.

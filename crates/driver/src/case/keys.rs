@@ -53,6 +53,7 @@ pub(crate) const KEYS: &[&str] = &[
     "modes.analytic[].polynomial[].coefficient",
     "modes.analytic[].polynomial[].powers",
     "modes.analytic[].polynomial[].odd_y",
+    "modes.analytic[].group",
     "flight.gravity",
     "flight.climb_deg",
     "flight.trim",

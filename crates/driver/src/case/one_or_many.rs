@@ -54,6 +54,16 @@ impl Single for std::path::PathBuf {
     }
 }
 
+impl Single for String {
+    const EXPECTED: &'static str = "a name or a list of names";
+    fn number(_: f64) -> Option<Self> {
+        None
+    }
+    fn text(value: &str) -> Option<Self> {
+        Some(value.to_owned())
+    }
+}
+
 struct Either<T>(PhantomData<T>);
 
 impl<'de, T: Single + Deserialize<'de>> Visitor<'de> for Either<T> {

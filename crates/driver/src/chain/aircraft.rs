@@ -1,11 +1,15 @@
 //! Everything the aerodynamics need: the surface and all modes on it.
 
+use super::control;
+use super::derivatives::Scales;
 use super::structure::StructureData;
 use super::surface::{Surface, Wanted};
 use crate::case::{self, CaseFile, Term};
 use crate::failure::Failure;
 use fladder_mesh::{SurfaceMode, Symmetry, Vec3};
-use fladder_modal::{self as modal, Component, Motion, PolynomialTerm, TransferReport};
+use fladder_modal::{
+    self as modal, Component, Motion, PolynomialTerm, RigidBody, TransferReport,
+};
 
 /// Surface, structure, and the modes in order: rigid, elastic, analytic.
 #[derive(Clone, Debug)]
@@ -15,6 +19,9 @@ pub(crate) struct Aircraft {
     pub(crate) modes: Vec<SurfaceMode>,
     /// Modes in whose columns the steady pressure turns with the surface: the elastic ones.
     pub(crate) turning: Vec<bool>,
+    /// How many of them the case asks for; behind them stand six unit rigid
+    /// modes where derivatives are wanted and there is no rigid body.
+    pub(crate) asked: usize,
     /// How the elastic modes came to the surface.
     pub(crate) transfer: Option<TransferReport>,
 }
@@ -40,11 +47,7 @@ impl Aircraft {
         let symmetry = surface.symmetry;
         if let Some(body) = &structure.body {
             centred(file, body, &surface)?;
-            let rigid = modal::rigid_modes(body, vertices).into_iter();
-            let carried = rigid
-                .zip(modal::RIGID_KINDS)
-                .filter(|(_, kind)| symmetry.carries(*kind));
-            modes.extend(carried.map(|(mode, _)| mode));
+            modes.extend(rigid_modes(body, &surface));
         }
         let mut report = None;
         let rigid = modes.len();
@@ -68,9 +71,11 @@ impl Aircraft {
         let elastic = rigid..modes.len();
         for (number, mode) in file.case.modes.analytic.iter().enumerate() {
             let place = format!("modes.analytic.{number}");
-            let mode = analytic(mode);
-            of_kind(file, &mode, symmetry, &place)?;
-            let shape = mode.on(vertices).map_err(|error| {
+            let formula = analytic(mode);
+            if mode.group.is_none() {
+                of_kind(file, &formula, symmetry, &place)?;
+            }
+            let mut shape = formula.on(vertices).map_err(|error| {
                 Failure::input(
                     error.to_string(),
                     file.places.of(&place),
@@ -78,6 +83,19 @@ impl Aircraft {
                     "correct the shape of the mode",
                 )
             })?;
+            if let Some(groups) = &mode.group {
+                control::restrict(&mut shape, &surface.mesh, groups.as_slice()).map_err(
+                    |what| {
+                        Failure::input(
+                            what,
+                            file.places.of(&format!("{place}.group")),
+                            "the mode would move another part of the surface, or none",
+                            "`fladder check` lists the groups of the mesh",
+                        )
+                    },
+                )?;
+            }
+            within_plane(file, &shape, &surface, &place)?;
             modes.push(shape);
         }
         if modes.is_empty() {
@@ -91,18 +109,30 @@ impl Aircraft {
         let turning = (0..modes.len())
             .map(|mode| turns && elastic.contains(&mode))
             .collect();
+        let asked = modes.len();
+        if structure.body.is_none() && Scales::of(&file.case.reference).is_some() {
+            let about = Vec3::from(file.case.reference.moment_point);
+            modes.extend(rigid_modes(&RigidBody::unit(about), &surface));
+        }
         Ok(Self {
             surface,
             structure,
             modes,
             turning,
+            asked,
             transfer: report,
         })
     }
 
-    /// Names of the modes, in order.
+    /// The modes the case asks for, in order.
+    pub(crate) fn asked_modes(&self) -> &[SurfaceMode] {
+        &self.modes[..self.asked]
+    }
+
+    /// Names of the modes the case asks for, in order.
     pub(crate) fn mode_names(&self) -> Vec<String> {
-        self.modes.iter().map(|mode| mode.name.clone()).collect()
+        let modes = self.asked_modes().iter();
+        modes.map(|mode| mode.name.clone()).collect()
     }
 
     /// Number of modes that take part in sweeps: analytic modes do so only
@@ -118,8 +148,18 @@ impl Aircraft {
         } else {
             file.case.modes.analytic.len()
         };
-        self.modes.len() - analytic
+        self.asked - analytic
     }
+}
+
+/// The rigid modes that the surface carries: all six, or three of a half.
+fn rigid_modes(body: &RigidBody, surface: &Surface) -> impl Iterator<Item = SurfaceMode> {
+    let symmetry = surface.symmetry;
+    modal::rigid_modes(body, &surface.mesh.vertices)
+        .into_iter()
+        .zip(modal::RIGID_KINDS)
+        .filter(move |(_, kind)| symmetry.carries(*kind))
+        .map(|(mode, _)| mode)
 }
 
 /// Rigid modes of a half model turn about a point of its plane.
@@ -167,6 +207,35 @@ fn of_kind(
         "the mirror image of the half would move in another way than the mode says",
         "remove the mode, or compute it on the half of its own symmetry or on the whole aircraft \
          (mesh.symmetry)",
+    ))
+}
+
+/// Refuses a control of a half model that leaves the plane where its image meets
+/// it; elsewhere the image moves as the kind of motion says.
+fn within_plane(
+    file: &CaseFile,
+    mode: &SurfaceMode,
+    surface: &Surface,
+    place: &str,
+) -> Result<(), Failure> {
+    let largest = mode.displacement.iter().map(Vec3::norm).fold(0.0, f64::max);
+    let leaves = |(u, vertex): (&Vec3, &Vec3)| {
+        let kept = surface.symmetry.in_plane(*u);
+        vertex.y == 0.0 && (u - kept).norm() > CENTRE_TOLERANCE * largest
+    };
+    let mut moved = mode.displacement.iter().zip(&surface.mesh.vertices);
+    if !moved.any(leaves) {
+        return Ok(());
+    }
+    Err(Failure::input(
+        format!(
+            "mode `{}` moves the symmetry plane as {} motion cannot",
+            mode.name,
+            surface.symmetry.word()
+        ),
+        file.places.of(place),
+        "the half and its mirror image would part there",
+        "name groups that do not reach the plane, or compute the mode on the other half model",
     ))
 }
 

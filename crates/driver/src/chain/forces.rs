@@ -258,7 +258,7 @@ pub(crate) fn assemble(
     aircraft: &Aircraft,
     own: OwnForces,
 ) -> Result<Assembled, Failure> {
-    let samples = own_forces::samples(&own.stored, &own_forces::grid(file))?;
+    let samples = own_forces::samples(aircraft, &own.stored, &own_forces::grid(file))?;
     let document = own_forces::document(aircraft, &own.stored, samples);
     Ok(Assembled { own, document })
 }

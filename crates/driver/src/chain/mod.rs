@@ -1,6 +1,8 @@
 //! From a case to roots: surface, modes, forces, sweep.
 
 pub(crate) mod aircraft;
+pub(crate) mod control;
+pub(crate) mod derivatives;
 pub(crate) mod exact;
 pub(crate) mod forces;
 pub(crate) mod memory;

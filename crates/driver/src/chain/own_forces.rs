@@ -248,9 +248,11 @@ pub(crate) fn unsolved(file: &CaseFile, error: &BemError) -> Failure {
 /// # Errors
 /// A point on the branch cut or at a pole.
 pub(crate) fn samples(
+    aircraft: &Aircraft,
     forces: &StoredForces,
     points: &[[f64; 2]],
 ) -> Result<Vec<Sample>, Failure> {
+    let asked = aircraft.asked;
     let transfer = &forces.solution.transfer;
     points
         .par_iter()
@@ -258,12 +260,13 @@ pub(crate) fn samples(
             let q = transfer
                 .q(c64::new(*g, *k))
                 .map_err(|error| not_evaluated(&error))?;
+            let q = q.submatrix(0, 0, asked, asked).to_owned();
             Ok(Sample::new(*g, *k, &q))
         })
         .collect()
 }
 
-fn not_evaluated(error: &LaplaceError) -> Failure {
+pub(crate) fn not_evaluated(error: &LaplaceError) -> Failure {
     let place = "the point asked for with --at or [gaf]";
     match error {
         LaplaceError::Singular { .. } => Failure::numerical(
@@ -306,11 +309,11 @@ pub(crate) fn document(
         beta_deg: forces.beta_deg,
         modes: aircraft.mode_names(),
         frames: aircraft
-            .modes
+            .asked_modes()
             .iter()
             .map(|mode| Frame::from(mode.frame))
             .collect(),
-        steady: steady.iter().copied().map(Some).collect(),
+        steady: steady[..aircraft.asked].iter().copied().map(Some).collect(),
         points,
     }
 }

@@ -71,6 +71,8 @@ pub(crate) struct Surface {
     pub(crate) faults: Vec<Fault>,
     /// Bodies, area in m² and volume in m³ of the whole aircraft.
     pub(crate) bodies: usize,
+    /// Number of each triangle's body, from 1.
+    pub(crate) body_of_triangle: Vec<i32>,
     pub(crate) area: f64,
     pub(crate) volume: f64,
     /// Where the wake leaves; empty without one.
@@ -95,6 +97,7 @@ impl Surface {
         let mut notes = loaded.notes;
         let mut faults = judgement.faults;
         let mesh = judgement.mesh;
+        let count = mesh.triangles.len();
         let has_errors = faults.iter().any(|fault| fault.severity == Severity::Error);
         let (mut trailing_edges, mut body_lines) = (Vec::new(), Vec::new());
         if !has_errors && wanted.wake.mode != WakeMode::None {
@@ -107,6 +110,7 @@ impl Surface {
             symmetry: wanted.symmetry,
             faults,
             bodies: judgement.whole_bodies,
+            body_of_triangle: numbered(count, &judgement.bodies),
             area: judgement.area,
             volume: judgement.volume,
             trailing_edges,
@@ -130,6 +134,20 @@ impl Surface {
         }
         Err(refusal(&self.file, &errors))
     }
+}
+
+/// Number of the body of each of `count` triangles, from 1.
+fn numbered(count: usize, bodies: &[judge::Body]) -> Vec<i32> {
+    let mut numbers = vec![0; count];
+    for (number, body) in (1..).zip(bodies) {
+        for &t in &body.triangles {
+            // A surface with errors may lack triangles of the file.
+            if let Some(place) = numbers.get_mut(t as usize) {
+                *place = number;
+            }
+        }
+    }
+    numbers
 }
 
 /// The faults as one message.

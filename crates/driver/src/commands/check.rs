@@ -7,10 +7,10 @@ use crate::chain::memory::{bytes_in_words, usable_bytes};
 use crate::chain::own_forces;
 use crate::chain::surface::{Surface, Wanted, refusal};
 use crate::failure::Failure;
-use crate::report;
-use fladder_bem::{Plan, Problem};
-use fladder_mesh::Symmetry;
+use crate::report::{self, EdgeEnd};
+use fladder_bem::{Plan, Problem, WakeSheet};
 use fladder_mesh::judge::{Code, Fault, Severity};
+use fladder_mesh::Symmetry;
 use serde::Serialize;
 use std::path::Path;
 
@@ -39,11 +39,18 @@ struct Findings {
 struct Edge {
     edges: usize,
     length: f64,
+    /// What it begins and ends with; left out where no wake was laid out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ends: Option<[EdgeEnd; 2]>,
 }
 
 #[derive(Debug, Default, Serialize)]
 struct WakeSize {
     elements: usize,
+    rows: usize,
+    streamlines: usize,
+    lines_on_bodies: usize,
+    longest_row: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -64,6 +71,7 @@ pub(crate) fn check(
     session: &Session,
     input: &Path,
     json: Option<&Path>,
+    vtu: Option<&Path>,
 ) -> Result<(), Failure> {
     let is_case = input.is_dir() || input.extension().is_some_and(|e| e == "toml");
     let case = if is_case {
@@ -87,7 +95,16 @@ pub(crate) fn check(
     let mut surface = Surface::read(&wanted)?;
     let mut findings = Findings::of(&surface);
     // What comes after is only looked at on a surface that can be computed.
-    let later = look_further(session, case.as_ref(), &mut surface, &mut findings);
+    let plan = look_further(session, case.as_ref(), &mut surface, &mut findings);
+    let sheet = plan
+        .as_ref()
+        .ok()
+        .and_then(Option::as_ref)
+        .map(|plan| &plan.wake);
+    if let Some(folder) = vtu {
+        write_pictures(session, folder, &surface, sheet)?;
+    }
+    let later = plan.map(drop);
     findings.faults = surface.faults.iter().map(Finding::of).collect();
     let errors: Vec<&Fault> = surface
         .faults
@@ -111,7 +128,7 @@ fn look_further(
     case: Option<&CaseFile>,
     surface: &mut Surface,
     findings: &mut Findings,
-) -> Result<(), Failure> {
+) -> Result<Option<Plan>, Failure> {
     let console = &session.console;
     report::surface(console, surface);
     if surface
@@ -119,7 +136,7 @@ fn look_further(
         .iter()
         .any(|fault| fault.severity == Severity::Error)
     {
-        return Ok(());
+        return Ok(None);
     }
     let plan = match case {
         Some(file) => {
@@ -132,7 +149,8 @@ fn look_further(
         }
         None => bare_plan(surface)?,
     };
-    findings.wake.elements = plan.sizes.wake_elements;
+    report::wake(console, surface, &plan);
+    findings.add_wake(surface, &plan);
     findings.estimate = Estimate {
         memory_bytes: plan.memory_bytes,
         seconds: plan.core_seconds / rayon::current_num_threads() as f64,
@@ -147,6 +165,21 @@ fn look_further(
         rayon::current_num_threads()
     ));
     surface.faults.extend(too_large(&plan));
+    Ok(Some(plan))
+}
+
+/// What there is to be seen, faults or not.
+fn write_pictures(
+    session: &Session,
+    folder: &Path,
+    surface: &Surface,
+    sheet: Option<&WakeSheet>,
+) -> Result<(), Failure> {
+    let files = report::pictures(surface, sheet)
+        .map_err(|error| Failure::io("draw the surface", folder, &error))?;
+    for (name, content) in files {
+        session.write(&folder.join(name), content)?;
+    }
     Ok(())
 }
 
@@ -213,6 +246,7 @@ impl Findings {
         let edge = |edge: &fladder_mesh::TrailingEdge| Edge {
             edges: edge.upper.len(),
             length: edge.length(&surface.mesh),
+            ends: None,
         };
         Self {
             schema: SCHEMA,
@@ -229,6 +263,20 @@ impl Findings {
             estimate: Estimate::default(),
             modes: Vec::new(),
             notes: surface.notes.clone(),
+        }
+    }
+
+    fn add_wake(&mut self, surface: &Surface, plan: &Plan) {
+        self.wake = WakeSize {
+            elements: plan.sizes.wake_elements,
+            rows: plan.sizes.wake_rows.saturating_sub(1),
+            streamlines: plan.sizes.wake_streamlines,
+            lines_on_bodies: plan.wake.junction_lines.len(),
+            longest_row: plan.wake.longest_row,
+        };
+        let ends = report::ends(&surface.trailing_edges, &plan.wake);
+        for (edge, ends) in self.trailing_edges.iter_mut().zip(ends) {
+            edge.ends = Some(ends);
         }
     }
 }

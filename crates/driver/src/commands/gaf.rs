@@ -30,6 +30,8 @@ pub(crate) fn gaf(
     let own = own_forces::obtain(&file, &aircraft, &session.open_cache(&file), console)?;
     report::own_forces(console, &file, &aircraft, &own);
     report::wake_jumps(console, &own.stored.solution.steady);
+    report::steady_forces(console, &aircraft, &own.stored.solution.steady);
+    session.derivatives(&file, &aircraft, &own, session.common.out.as_deref())?;
     if json.is_none() && at.is_empty() {
         return Ok(());
     }
@@ -38,7 +40,7 @@ pub(crate) fn gaf(
     } else {
         at.to_vec()
     };
-    let samples = own_forces::samples(&own.stored, &points)?;
+    let samples = own_forces::samples(&aircraft, &own.stored, &points)?;
     if !at.is_empty() {
         for sample in &samples {
             report::sample(console, &aircraft.mode_names(), sample);

@@ -16,10 +16,14 @@ pub(crate) use sweep::sweep;
 
 use crate::cache::Cache;
 use crate::case::CaseFile;
+use crate::chain::aircraft::Aircraft;
+use crate::chain::derivatives::Derivatives;
+use crate::chain::own_forces::{self, OwnForces};
 use crate::cli::Common;
 use crate::failure::Failure;
 use crate::files;
 use crate::json;
+use crate::report;
 use crate::terminal::{Console, warn};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -62,6 +66,38 @@ impl Session {
             .unwrap_or_else(|| Path::new("results").join(&file.name))
     }
 
+    /// Prints derivatives, where the case gives the lengths for them, and writes them
+    /// into the folder, where there is one.
+    fn derivatives(
+        &self,
+        file: &CaseFile,
+        aircraft: &Aircraft,
+        own: &OwnForces,
+        out: Option<&Path>,
+    ) -> Result<(), Failure> {
+        let found = Derivatives::of(file, aircraft, &own.stored)
+            .map_err(|error| own_forces::not_evaluated(&error))?;
+        let Some(found) = found else {
+            self.console
+                .say("no derivatives: they need area, span and chord in [reference]");
+            return Ok(());
+        };
+        report::derivatives(&self.console, file, &found);
+        let Some(out) = out else { return Ok(()) };
+        let document = report::derivatives_document(file, &found);
+        self.write_json(&out.join("derivatives.json"), &document)?;
+        self.write(
+            &out.join("derivatives.csv"),
+            report::derivatives_csv(&found),
+        )
+    }
+
+    fn write(&self, path: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
+        files::write(path, content)?;
+        self.console.say(format!("wrote {}", path.display()));
+        Ok(())
+    }
+
     fn write_json<T: Serialize>(&self, path: &Path, value: &T) -> Result<(), Failure> {
         let text = json::text(value).map_err(|error| {
             Failure::numerical(
@@ -71,8 +107,6 @@ impl Session {
                 "please report this with the case file and the command",
             )
         })?;
-        files::write(path, &text)?;
-        self.console.say(format!("wrote {}", path.display()));
-        Ok(())
+        self.write(path, text)
     }
 }

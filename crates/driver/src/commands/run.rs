@@ -8,7 +8,6 @@ use crate::chain::structure::StructureData;
 use crate::chain::sweep as sweeping;
 use crate::cli::Method;
 use crate::failure::Failure;
-use crate::files;
 use crate::plot::{self, Subject};
 use crate::report;
 use std::path::Path;
@@ -32,6 +31,7 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
         report::transfer(console, aircraft.transfer.as_ref());
         let own = own_forces::obtain(&file, &aircraft, &session.open_cache(&file), console)?;
         report::own_forces(console, &file, &aircraft, &own);
+        session.derivatives(&file, &aircraft, &own, Some(&out))?;
         let assembled = forces::assemble(&file, &aircraft, own)?;
         session.write_json(&out.join("gaf.json"), &assembled.document)?;
         let forces = Forces::own(&file, &aircraft, &assembled.own, &assembled.document)?;
@@ -40,13 +40,8 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
     console.notes(&forces.notes);
     let result = sweeping::run(&file, &structure, &forces, method, console)?;
     session.write_json(&out.join("flutter.json"), &result)?;
-    let write = |name: &str, text: &str| {
-        let path = out.join(name);
-        files::write(&path, text)?;
-        console.say(format!("wrote {}", path.display()));
-        Ok(())
-    };
-    write("roots.csv", &report::roots_csv(&result.methods))?;
+    let write = |name: &str, text: String| session.write(&out.join(name), text);
+    write("roots.csv", report::roots_csv(&result.methods))?;
     let conditions = report::conditions(&file, &speeds, density);
     let title = if file.case.title.is_empty() {
         &file.name
@@ -58,8 +53,8 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
         conditions: &conditions,
         methods: &result.methods,
     };
-    write("root_locus.svg", &plot::root_locus(&subject))?;
-    write("vgf.svg", &plot::flutter_diagram(&subject))?;
+    write("root_locus.svg", plot::root_locus(&subject))?;
+    write("vgf.svg", plot::flutter_diagram(&subject))?;
     report::roots(console, &result.methods, &speeds);
     Ok(())
 }

@@ -34,7 +34,7 @@ pub(crate) fn own_forces(
     };
     console.say(format!(
         "forces of {} modes {how}, key {}",
-        aircraft.modes.len(),
+        aircraft.asked,
         forces.key.to_hex()
     ));
     console.notes(&solution.notes);
@@ -52,6 +52,14 @@ fn steady_loads(console: &Console, file: &CaseFile, aircraft: &Aircraft, steady:
         flow.beta_deg,
         fixed(steady.lift_by_pressure, 5),
         fixed(steady.lift_by_wake_jump, 5)
+    ));
+    console.say(format!(
+        "  drag {} m² by pressure, {} in the Trefftz plane",
+        fixed(drag(steady), 5),
+        steady.induced_drag.map_or_else(
+            || "undefined".to_owned(),
+            |drag| format!("{} m²", fixed(drag, 5))
+        )
     ));
     if let Some(area) = file.case.reference.area {
         console.say(format!(
@@ -72,6 +80,12 @@ fn steady_loads(console: &Console, file: &CaseFile, aircraft: &Aircraft, steady:
         "  lowest pressure coefficient {pressure:.3} on triangle {triangle}"
     ));
     level_flight(console, file, aircraft, steady.lift_by_pressure);
+}
+
+/// Along the stream, per dynamic pressure.
+fn drag(steady: &SteadyState) -> f64 {
+    let products = steady.loads.force.iter().zip(steady.stream);
+    products.map(|(force, stream)| force * stream).sum()
 }
 
 /// Speed at which the lift carries the weight.
@@ -100,6 +114,19 @@ fn level_flight(console: &Console, file: &CaseFile, aircraft: &Aircraft, lift: f
 
 /// m/s², where the case gives none.
 const STANDARD_GRAVITY: f64 = 9.806_65;
+
+/// Steady generalised force of every mode the case asks for.
+pub(crate) fn steady_forces(console: &Console, aircraft: &Aircraft, steady: &SteadyState) {
+    let mut table = Table::new(&[
+        ("mode", Align::Left),
+        ("steady generalised force / q∞", Align::Right),
+    ]);
+    let modes = aircraft.asked_modes().iter();
+    for (mode, force) in modes.zip(&steady.generalised_forces) {
+        table.row([mode.name.clone(), fixed(*force, 6)]);
+    }
+    console.say(table.text());
+}
 
 /// Spanwise wake jump of the steady flow along every trailing edge.
 pub(crate) fn wake_jumps(console: &Console, steady: &SteadyState) {

@@ -2,14 +2,20 @@
 
 mod csv;
 mod date;
+mod derivatives;
 mod forces;
+mod pictures;
 mod roots;
 mod structure;
 mod surface;
+mod wake;
 
 pub(crate) use csv::roots_csv;
 pub(crate) use date::utc;
-pub(crate) use forces::{own_forces, sample, wake_jumps};
+pub(crate) use derivatives::{derivatives, derivatives_csv, document as derivatives_document};
+pub(crate) use forces::{own_forces, sample, steady_forces, wake_jumps};
+pub(crate) use pictures::{EdgeEnd, ends, pictures};
 pub(crate) use roots::{conditions, roots};
 pub(crate) use structure::{modes_summary, structure, transfer};
 pub(crate) use surface::surface;
+pub(crate) use wake::wake;

@@ -131,7 +131,7 @@ impl<'a> Cursor<'a> {
         Ok(String::from_utf8_lossy(&line[1..end]).into_owned())
     }
 
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], Malformed> {
+    pub(super) fn take<const N: usize>(&mut self) -> Result<[u8; N], Malformed> {
         match self.bytes[self.at..].first_chunk() {
             Some(chunk) => {
                 self.at += N;

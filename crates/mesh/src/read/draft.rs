@@ -81,6 +81,19 @@ impl Draft {
         self.triangles.extend(cut);
     }
 
+    /// Adds a polygon as triangles: a quadrilateral along the better diagonal, others as a
+    /// fan round their first corner.
+    pub(super) fn add_polygon(&mut self, corners: &[u32]) {
+        match *corners {
+            [a, b, c, d] => self.add_quad([a, b, c, d]),
+            [first, ref rest @ ..] => {
+                let fan = rest.windows(2).map(|pair| [first, pair[0], pair[1]]);
+                self.triangles.extend(fan);
+            }
+            [] => {}
+        }
+    }
+
     /// Smallest angle in radians; zero when a vertex is missing.
     fn smallest_angle(&self, triangle: [u32; 3]) -> f64 {
         let mut corners = [Vec3::zeros(); 3];

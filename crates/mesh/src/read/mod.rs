@@ -1,4 +1,5 @@
-//! Mesh files: Gmsh `.msh` 4.1 and 2.2, STL, OBJ, each plain or gzipped.
+//! Mesh files: Gmsh `.msh` 4.1 and 2.2, STL, OBJ, PLY, VTK `.vtu` and Nastran bulk data,
+//! each plain or gzipped.
 //!
 //! The format is told from the content, never from the name. Readers do not
 //! judge the surface: a vertex that is not a number, or a triangle that names
@@ -13,8 +14,11 @@ mod msh;
 mod msh2;
 mod msh4;
 mod msh_elements;
+mod nastran;
 mod obj;
+mod ply;
 mod stl;
+mod vtu;
 
 use std::fmt;
 use std::io::Read;
@@ -30,6 +34,9 @@ pub const MISSING_VERTEX: u32 = u32::MAX;
 /// Most bytes a gzipped file may unpack to: a surface mesh of this size could
 /// not be computed, and a few kilobytes of gzip can ask for any amount.
 const MAX_UNPACKED: u64 = 1 << 30;
+
+/// Bytes among which an XML file says that it is VTK's.
+const XML_HEAD: usize = 4096;
 
 /// Why a mesh file cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -94,6 +101,12 @@ pub enum Format {
     StlBinary,
     /// Wavefront OBJ.
     Obj,
+    /// PLY of text or binary numbers.
+    Ply,
+    /// VTK's unstructured grid in XML.
+    Vtu,
+    /// Nastran bulk data.
+    Nastran,
 }
 
 /// A mesh as read, with what the reader did to it.
@@ -172,6 +185,9 @@ fn parse_draft(bytes: &[u8]) -> Result<(Format, Draft), Malformed> {
         Format::StlAscii => stl::parse_ascii(bytes),
         Format::StlBinary => stl::parse_binary(bytes),
         Format::Obj => obj::parse(bytes),
+        Format::Ply => ply::parse(bytes),
+        Format::Vtu => vtu::parse(bytes),
+        Format::Nastran => nastran::parse(bytes),
     }?;
     Ok((format, draft))
 }
@@ -201,7 +217,9 @@ fn detect(bytes: &[u8]) -> Result<Format, Malformed> {
     if text.is_empty() {
         return Err(Malformed::whole("the file is empty", "give a mesh file"));
     }
-    if text.starts_with(b"$") {
+    // Gmsh's sections begin with `$`, and so do Nastran's comments.
+    let is_bulk_data = nastran::is_bulk_data(text);
+    if text.starts_with(b"$") && (!is_bulk_data || text.starts_with(b"$MeshFormat")) {
         return Ok(Format::Msh);
     }
     if stl::is_whole_binary(bytes) {
@@ -216,19 +234,26 @@ fn detect(bytes: &[u8]) -> Result<Format, Malformed> {
     {
         return Ok(Format::StlAscii);
     }
+    if starts(b"ply\n") || starts(b"ply\r") {
+        return Ok(Format::Ply);
+    }
+    let is_vtk = |word: &[u8]| word.eq_ignore_ascii_case(b"<vtkfile");
+    if starts(b"<") && text[..text.len().min(XML_HEAD)].windows(8).any(is_vtk) {
+        return Ok(Format::Vtu);
+    }
+    if is_bulk_data {
+        return Ok(Format::Nastran);
+    }
     let other = [
-        (&b"ply"[..], "a PLY file"),
-        (b"<?xml", "an XML file (VTK?)"),
-        (b"<vtkfile", "a VTK XML file"),
+        (&b"<?xml"[..], "an XML file that is not VTK's"),
         (b"# vtk", "a legacy VTK file"),
         (b"off", "an OFF file"),
-        (b"begin bulk", "a Nastran bulk file"),
         (b"iso-10303-21", "a STEP file"),
     ];
     if let Some((_, name)) = other.iter().find(|(word, _)| starts(word)) {
         return Err(Malformed::whole(
             format!("this is {name}, which is not read"),
-            "save the mesh as Gmsh .msh, STL or OBJ",
+            "save the mesh as Gmsh .msh, STL, OBJ, PLY, .vtu or Nastran bulk data",
         ));
     }
     let is_vertex_line =
@@ -241,7 +266,7 @@ fn detect(bytes: &[u8]) -> Result<Format, Malformed> {
         return Ok(Format::StlBinary);
     }
     Err(Malformed::whole(
-        "the content is none of Gmsh .msh, STL and OBJ",
+        "the content is none of Gmsh .msh, STL, OBJ, PLY, .vtu and Nastran bulk data",
         "save the mesh in one of these formats",
     ))
 }

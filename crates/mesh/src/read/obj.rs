@@ -150,15 +150,7 @@ fn cut(draft: &mut Draft, polygons: Vec<Polygon>) {
             continue;
         }
         let first = draft.triangles.len() as u32;
-        if let [a, b, c, d] = corners[..] {
-            draft.add_quad([a, b, c, d]);
-        } else {
-            draft.triangles.extend(
-                corners[1..]
-                    .windows(2)
-                    .map(|pair| [corners[0], pair[0], pair[1]]),
-            );
-        }
+        draft.add_polygon(&corners);
         if !polygon.group.is_empty() {
             draft.add_to_surface(&polygon.group, first..draft.triangles.len() as u32);
         }
