@@ -22,6 +22,15 @@ pub(super) fn check(file: &CaseFile) -> Checked {
     source_of_forces(case, &at)?;
     if let Some(mesh) = &case.mesh {
         surface(mesh, case.flow.beta_deg, &at)?;
+        let across = case.reference.moment_point[1];
+        if mesh.symmetry.is_half() && across != 0.0 {
+            return Err(at.refuse(
+                "reference.moment_point",
+                format!("`reference.moment_point` is at y = {across} with a half model"),
+                "moments about a point beside the plane mix symmetric and antisymmetric motion",
+                "give a point with y = 0",
+            ));
+        }
     }
     if let Some(given) = &case.structure {
         structure(given, &at)?;

@@ -47,7 +47,7 @@ impl Aircraft {
         let symmetry = surface.symmetry;
         if let Some(body) = &structure.body {
             centred(file, body, &surface)?;
-            modes.extend(rigid_of(symmetry, body, vertices));
+            modes.extend(rigid_modes(body, &surface));
         }
         let mut report = None;
         let rigid = modes.len();
@@ -71,9 +71,11 @@ impl Aircraft {
         let elastic = rigid..modes.len();
         for (number, mode) in file.case.modes.analytic.iter().enumerate() {
             let place = format!("modes.analytic.{number}");
-            let motion = analytic(mode);
-            of_kind(file, &motion, symmetry, &place)?;
-            let mut shape = motion.on(vertices).map_err(|error| {
+            let formula = analytic(mode);
+            if mode.group.is_none() {
+                of_kind(file, &formula, symmetry, &place)?;
+            }
+            let mut shape = formula.on(vertices).map_err(|error| {
                 Failure::input(
                     error.to_string(),
                     file.places.of(&place),
@@ -93,6 +95,7 @@ impl Aircraft {
                     },
                 )?;
             }
+            within_plane(file, &shape, &surface, &place)?;
             modes.push(shape);
         }
         if modes.is_empty() {
@@ -109,7 +112,7 @@ impl Aircraft {
         let asked = modes.len();
         if structure.body.is_none() && Scales::of(&file.case.reference).is_some() {
             let about = Vec3::from(file.case.reference.moment_point);
-            modes.extend(rigid_of(symmetry, &RigidBody::unit(about), vertices));
+            modes.extend(rigid_modes(&RigidBody::unit(about), &surface));
         }
         Ok(Self {
             surface,
@@ -147,6 +150,16 @@ impl Aircraft {
         };
         self.asked - analytic
     }
+}
+
+/// The rigid modes that the surface carries: all six, or three of a half.
+fn rigid_modes(body: &RigidBody, surface: &Surface) -> impl Iterator<Item = SurfaceMode> {
+    let symmetry = surface.symmetry;
+    modal::rigid_modes(body, &surface.mesh.vertices)
+        .into_iter()
+        .zip(modal::RIGID_KINDS)
+        .filter(move |(_, kind)| symmetry.carries(*kind))
+        .map(|(mode, _)| mode)
 }
 
 /// Rigid modes of a half model turn about a point of its plane.
@@ -197,14 +210,33 @@ fn of_kind(
     ))
 }
 
-/// The rigid modes of a body that a half model has: all of a whole one.
-fn rigid_of(symmetry: Symmetry, body: &RigidBody, vertices: &[Vec3]) -> Vec<SurfaceMode> {
-    modal::rigid_modes(body, vertices)
-        .into_iter()
-        .zip(modal::RIGID_KINDS)
-        .filter(|(_, kind)| symmetry.carries(*kind))
-        .map(|(mode, _)| mode)
-        .collect()
+/// Refuses a control of a half model that leaves the plane where its image meets
+/// it; elsewhere the image moves as the kind of motion says.
+fn within_plane(
+    file: &CaseFile,
+    mode: &SurfaceMode,
+    surface: &Surface,
+    place: &str,
+) -> Result<(), Failure> {
+    let largest = mode.displacement.iter().map(Vec3::norm).fold(0.0, f64::max);
+    let leaves = |(u, vertex): (&Vec3, &Vec3)| {
+        let kept = surface.symmetry.in_plane(*u);
+        vertex.y == 0.0 && (u - kept).norm() > CENTRE_TOLERANCE * largest
+    };
+    let mut moved = mode.displacement.iter().zip(&surface.mesh.vertices);
+    if !moved.any(leaves) {
+        return Ok(());
+    }
+    Err(Failure::input(
+        format!(
+            "mode `{}` moves the symmetry plane as {} motion cannot",
+            mode.name,
+            surface.symmetry.word()
+        ),
+        file.places.of(place),
+        "the half and its mirror image would part there",
+        "name groups that do not reach the plane, or compute the mode on the other half model",
+    ))
 }
 
 fn not_transferred(file: &CaseFile, error: &modal::TransferError) -> Failure {
