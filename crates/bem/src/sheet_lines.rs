@@ -1,6 +1,6 @@
 //! Lines of the sheet and the triangles between them.
 
-use crate::stations::with_stations;
+use crate::stations::between;
 use crate::wake::NO_SLOT;
 use crate::wake_builder::Builder;
 use crate::wake_sheet::{JunctionLine, WakeSheet};
@@ -116,22 +116,29 @@ impl Builder<'_> {
         knots: &[f64],
         [before, behind]: [usize; 2],
     ) -> SheetLine {
-        let xi = with_stations(self.law, knots, &self.stations);
         let last = knots.len() - 1;
-        let points: Vec<(Vec3, u32)> = xi
-            .iter()
-            .map(|&x| {
-                let thread = if x < knots[last] { before } else { behind };
-                let slot = self.slot(thread, x);
+        let own = knots.iter().copied().zip(corners.iter().copied());
+        let between = between(self.law, knots, &self.stations)
+            .into_iter()
+            .map(|x| {
                 let i = knots.partition_point(|k| *k <= x);
                 let point = if i > last {
                     corners[last] + (x - knots[last]) * self.direction
                 } else {
-                    let i = i.max(1);
                     let share = (x - knots[i - 1]) / (knots[i] - knots[i - 1]);
                     corners[i - 1] + share * (corners[i] - corners[i - 1])
                 };
-                (point, slot)
+                (x, point)
+            });
+        let mut all: Vec<(f64, Vec3)> = own.chain(between).collect();
+        // Stable: corners at one distance keep their order.
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let xi: Vec<f64> = all.iter().map(|p| p.0).collect();
+        let points: Vec<(Vec3, u32)> = all
+            .into_iter()
+            .map(|(x, point)| {
+                let thread = if x < knots[last] { before } else { behind };
+                (point, self.slot(thread, x))
             })
             .collect();
         let anchor = corners[last] - knots[last] * self.direction;
@@ -234,27 +241,20 @@ impl Builder<'_> {
         self.far.strips.push([a.far, b.far]);
     }
 
-    /// Two triangles, cut along the shorter diagonal.
+    /// Two triangles, cut along the shorter diagonal; where both are alike, along the one
+    /// from the upstream corner nearer to the plane y = 0, so that port mirrors starboard.
     fn quadrilateral(&self, [i, j, k, l]: [u32; 4]) -> [[u32; 3]; 2] {
         let p = [i, j, k, l].map(|v| self.sheet.vertices[v as usize]);
-        if first_diagonal(&p) {
+        let (first, second) = ((p[0] - p[2]).norm(), (p[1] - p[3]).norm());
+        let first_is_shorter = if (first - second).abs() > 1e-9 * first {
+            first < second
+        } else {
+            p[0].y.abs() <= p[3].y.abs()
+        };
+        if first_is_shorter {
             [[i, j, k], [i, k, l]]
         } else {
             [[i, j, l], [j, k, l]]
         }
     }
-}
-
-/// Diagonals that differ less than this are as long as each other.
-const SAME_LENGTH: f64 = 1e-9;
-
-/// Whether the quadrangle is divided from its first to its third corner: along the shorter
-/// diagonal, and where both are as long from the upstream corner nearer to the plane
-/// y = 0, so that the sheet of a symmetric surface is symmetric.
-fn first_diagonal(p: &[Vec3; 4]) -> bool {
-    let (first, second) = ((p[0] - p[2]).norm(), (p[1] - p[3]).norm());
-    if (first - second).abs() > SAME_LENGTH * (first + second) {
-        return first < second;
-    }
-    p[0].y.abs() <= p[3].y.abs()
 }
