@@ -117,7 +117,11 @@ impl Aircraft {
     /// Numbers of the modes whose name passes.
     fn those(&self, keep: impl Fn(&str) -> bool) -> Vec<usize> {
         let names = self.modes.iter().map(|mode| mode.name.as_str());
-        (0..).zip(names).filter(|(_, name)| keep(name)).map(|(i, _)| i).collect()
+        (0..)
+            .zip(names)
+            .filter(|(_, name)| keep(name))
+            .map(|(i, _)| i)
+            .collect()
     }
 
     /// Largest entry of Q between symmetric and antisymmetric modes of a set, by the
@@ -152,7 +156,8 @@ impl Aircraft {
             error,
             goal,
         };
-        let exact = self.those(|name| !name.starts_with("elastic") && !name.starts_with(PROJECTED));
+        let exact =
+            self.those(|name| !name.starts_with("elastic") && !name.starts_with(PROJECTED));
         let shapes = self.those(|name| name.starts_with("elastic"));
         let projected = self.those(|name| name.starts_with(PROJECTED));
         let (rigid, _) = self.coupling(&q, &exact);

@@ -154,7 +154,11 @@ pub fn rigid_modes(mesh: &TriMesh, frame: Frame, centre: Vec3) -> Vec<SurfaceMod
             let mut axis = Vec3::zeros();
             axis[i % 3] = 1.0;
             mode(mesh, name, frame, move |x| {
-                if i < 3 { axis } else { axis.cross(&(x - centre)) }
+                if i < 3 {
+                    axis
+                } else {
+                    axis.cross(&(x - centre))
+                }
             })
         })
         .collect()

@@ -59,7 +59,11 @@ impl MeshFigures {
         let solution = aircraft.solve()?;
         let q = solution.transfer.q(c64::new(0.0, REDUCED_FREQUENCY))?;
         let rows = (0..q.nrows())
-            .map(|i| (0..q.ncols()).map(|j| [q[(i, j)].re, q[(i, j)].im]).collect())
+            .map(|i| {
+                (0..q.ncols())
+                    .map(|j| [q[(i, j)].re, q[(i, j)].im])
+                    .collect()
+            })
             .collect();
         Ok(Self {
             name: mesh
@@ -68,7 +72,11 @@ impl MeshFigures {
             vertices: aircraft.mesh.vertices.len(),
             triangles: aircraft.mesh.triangles.len(),
             derivatives: derivatives(&aircraft, &solution),
-            modes: aircraft.modes.iter().map(|mode| mode.name.clone()).collect(),
+            modes: aircraft
+                .modes
+                .iter()
+                .map(|mode| mode.name.clone())
+                .collect(),
             q: rows,
         })
     }
@@ -125,9 +133,8 @@ fn derivatives(aircraft: &Aircraft, solution: &Solution) -> [f64; 4] {
             -yaw / (area * span),
         ]
     };
-    let slope = |ahead: [f64; 4], behind: [f64; 4], i: usize| {
-        (ahead[i] - behind[i]) / (2.0 * step)
-    };
+    let slope =
+        |ahead: [f64; 4], behind: [f64; 4], i: usize| (ahead[i] - behind[i]) / (2.0 * step);
     let by_alpha = (at(alpha + step, 0.0), at(alpha - step, 0.0));
     let by_beta = (at(alpha, step), at(alpha, -step));
     [
@@ -178,7 +185,10 @@ impl Refinement {
                 other.name, finest.name
             )));
         }
-        let sizes: Vec<f64> = figures.iter().map(|f| (f.vertices as f64).powf(-0.5)).collect();
+        let sizes: Vec<f64> = figures
+            .iter()
+            .map(|f| (f.vertices as f64).powf(-0.5))
+            .collect();
         let mut quantities: Vec<Quantity> = DERIVATIVES
             .iter()
             .enumerate()
@@ -193,14 +203,20 @@ impl Refinement {
             quantities.push(quantity(&name, &sizes, &values, false));
         }
         Ok(Self {
-            meshes: figures.iter().map(|f| (f.name.clone(), f.triangles)).collect(),
+            meshes: figures
+                .iter()
+                .map(|f| (f.name.clone(), f.triangles))
+                .collect(),
             quantities,
         })
     }
 
     /// Largest error of any quantity on a mesh.
     pub fn worst(&self, mesh: usize) -> f64 {
-        self.quantities.iter().map(|q| q.errors[mesh]).fold(0.0, f64::max)
+        self.quantities
+            .iter()
+            .map(|q| q.errors[mesh])
+            .fold(0.0, f64::max)
     }
 }
 
@@ -230,7 +246,10 @@ fn quantity(name: &str, sizes: &[f64], values: &[c64], is_real: bool) -> Quantit
         values: values.iter().map(shown).collect(),
         limit: shown(&limit),
         order,
-        errors: values.iter().map(|z| (z - limit).norm() / limit.norm()).collect(),
+        errors: values
+            .iter()
+            .map(|z| (z - limit).norm() / limit.norm())
+            .collect(),
     }
 }
 

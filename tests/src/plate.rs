@@ -52,7 +52,9 @@ impl Planform {
         vec![
             mode(mesh, "plunge", Frame::Inertial, |_| Vec3::z()),
             mode(mesh, "pitch", Frame::Inertial, move |x| turn(x, root)),
-            mode(mesh, "bending", Frame::Inertial, move |x| shape(x) * Vec3::z()),
+            mode(mesh, "bending", Frame::Inertial, move |x| {
+                shape(x) * Vec3::z()
+            }),
             mode(mesh, "torsion", Frame::Inertial, move |x| {
                 shape(x) * turn(x, root + slope * x.y.abs())
             }),
@@ -61,7 +63,15 @@ impl Planform {
 
     /// Semichord of p, half the root chord.
     fn semichord(self) -> f64 {
-        0.5 * self.wing(THICK, Cells { chord: 3, half_span: 1 }).chord
+        0.5 * self
+            .wing(
+                THICK,
+                Cells {
+                    chord: 3,
+                    half_span: 1,
+                },
+            )
+            .chord
     }
 }
 
@@ -106,9 +116,8 @@ impl Plate {
     pub fn q(&self, p: c64) -> Result<Mat<c64>, Fault> {
         let (thick, thin) = (self.thick.q(p)?, self.thin.q(p)?);
         Ok(Mat::from_fn(thick.nrows(), thick.ncols(), |i, j| {
-            let limit = |part: fn(c64) -> f64| {
-                plate_limit(part(thick[(i, j)]), part(thin[(i, j)]))
-            };
+            let limit =
+                |part: fn(c64) -> f64| plate_limit(part(thick[(i, j)]), part(thin[(i, j)]));
             c64::new(limit(|z| z.re), limit(|z| z.im))
         }))
     }
@@ -142,7 +151,11 @@ impl Plate {
             let error = (self.q(p)? - &exact).norm_max() / exact.norm_max();
             let (g, k) = (p.re, p.im);
             let place = format!("worst at g = {g:+.2}, k = {k:.2}");
-            let class = if k <= LOW { format!("k ≤ {LOW}") } else { format!("k > {LOW}") };
+            let class = if k <= LOW {
+                format!("k ≤ {LOW}")
+            } else {
+                format!("k > {LOW}")
+            };
             let case = format!("{case}, {class}");
             match rows.iter_mut().find(|row| row.case == case) {
                 Some(row) if row.error >= error => {}
@@ -174,7 +187,11 @@ fn samples(file: &str) -> Result<Vec<(c64, Mat<c64>)>, Fault> {
         if line.has("Mach") && line.number("Mach")? != 0.0 {
             continue;
         }
-        let g = if line.has("g") { line.number("g")? } else { 0.0 };
+        let g = if line.has("g") {
+            line.number("g")?
+        } else {
+            0.0
+        };
         let [k, i, j] = line.numbers(["k", "i", "j"])?;
         let [re, im] = line.numbers(["ReQ", "ImQ"])?;
         let p = c64::new(g, k);

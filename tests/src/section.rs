@@ -77,8 +77,12 @@ impl Strip {
         let from_nose = 0.5 * CHORD * (1.0 + axis);
         let pitch = move |x: &Vec3| Vec3::new(x.z, 0.0, from_nose - x.x);
         let modes = [
-            mode(&mesh, "strip lift", Frame::Inertial, move |x| hat(x) * Vec3::z()),
-            mode(&mesh, "strip moment", Frame::Inertial, move |x| hat(x) * pitch(x)),
+            mode(&mesh, "strip lift", Frame::Inertial, move |x| {
+                hat(x) * Vec3::z()
+            }),
+            mode(&mesh, "strip moment", Frame::Inertial, move |x| {
+                hat(x) * pitch(x)
+            }),
             mode(&mesh, "plunge", Frame::Inertial, |_| Vec3::z()),
             mode(&mesh, "pitch", Frame::Inertial, pitch),
         ];
@@ -94,7 +98,10 @@ impl Strip {
         let q: Mat<c64> = self.transfer.q(p)?;
         Ok([2, 3].map(|column| {
             let lift = q[(0, column)] / self.width;
-            [lift, about_quarter_chord(q[(1, column)] / self.width, lift, self.axis)]
+            [
+                lift,
+                about_quarter_chord(q[(1, column)] / self.width, lift, self.axis),
+            ]
         }))
     }
 }
@@ -170,7 +177,10 @@ pub fn theodorsen(wing: &LongWing, goal: f64) -> Result<Vec<Row>, Fault> {
     const THICK: f64 = 0.03;
     const THIN: f64 = 0.015;
     let axis = pitch_axis()?;
-    let (thick, thin) = (Strip::new(wing, THICK, axis)?, Strip::new(wing, THIN, axis)?);
+    let (thick, thin) = (
+        Strip::new(wing, THICK, axis)?,
+        Strip::new(wing, THIN, axis)?,
+    );
     let mut rows = Vec::new();
     for g in [-0.1, 0.0, 0.1] {
         let (mut divided, mut limit) = (Worst::default(), Worst::default());
@@ -183,7 +193,16 @@ pub fn theodorsen(wing: &LongWing, goal: f64) -> Result<Vec<Row>, Fault> {
             let at_zero = combined(&|a, b| 2.0 * b - a);
             if std::env::var("SHOW").is_ok() {
                 for j in 0..2 {
-                    println!("{p} col {j}: ratio {:.4} {:.2}deg thin {:.4} {:.2}deg  lim {:.4} {:.2}deg M {:.4}", (a[j][0]/exact[j][0]).norm(), (a[j][0]/exact[j][0]).arg().to_degrees(), (b[j][0]/exact[j][0]).norm(), (b[j][0]/exact[j][0]).arg().to_degrees(), (at_zero[j][0]/exact[j][0]).norm(), (at_zero[j][0]/exact[j][0]).arg().to_degrees(), (a[j][1]-exact[j][1]).norm()/exact[j][0].norm()/0.5);
+                    println!(
+                        "{p} col {j}: ratio {:.4} {:.2}deg thin {:.4} {:.2}deg  lim {:.4} {:.2}deg M {:.4}",
+                        (a[j][0] / exact[j][0]).norm(),
+                        (a[j][0] / exact[j][0]).arg().to_degrees(),
+                        (b[j][0] / exact[j][0]).norm(),
+                        (b[j][0] / exact[j][0]).arg().to_degrees(),
+                        (at_zero[j][0] / exact[j][0]).norm(),
+                        (at_zero[j][0] / exact[j][0]).arg().to_degrees(),
+                        (a[j][1] - exact[j][1]).norm() / exact[j][0].norm() / 0.5
+                    );
                 }
             }
             divided.add(&by_factor, &exact);

@@ -21,9 +21,7 @@ const FITTED: f64 = 1e-11;
 pub fn worst_prediction(k: &[f64], q: &[Mat<c64>], floor: f64) -> (f64, [usize; 2], f64) {
     let (rows, columns) = q.first().map_or((0, 0), |q| (q.nrows(), q.ncols()));
     let largest = q.iter().map(|q| q.norm_max()).fold(0.0, f64::max);
-    let entries: Vec<[usize; 2]> = (0..rows * columns)
-        .map(|e| [e % rows, e / rows])
-        .collect();
+    let entries: Vec<[usize; 2]> = (0..rows * columns).map(|e| [e % rows, e / rows]).collect();
     let worst: Vec<(f64, [usize; 2], f64)> = entries
         .par_iter()
         .filter_map(|&[i, j]| {
@@ -124,7 +122,9 @@ mod tests {
     /// A rational function is predicted to rounding; one wrong sample stands out.
     #[test]
     fn a_rational_function_is_predicted_and_a_wrong_sample_seen() {
-        let k: Vec<f64> = (0..=20).map(|i| 1.5 * (f64::from(i) / 20.0).powf(1.5)).collect();
+        let k: Vec<f64> = (0..=20)
+            .map(|i| 1.5 * (f64::from(i) / 20.0).powf(1.5))
+            .collect();
         let exact = |k: f64| {
             let p = c64::new(0.0, k);
             p * p + 0.3 * p / (p + 0.2) + p / ((p + 0.3) * (p + 0.3) + 0.5)

@@ -67,15 +67,14 @@ fn kirchhoff(added: &Added, stream: Vec3, s: c64, frame: Frame) -> Mat<c64> {
             Frame::Inertial => turn.cross(&stream),
         };
         // v = s shift + convected, term by term in powers of s.
-        let moment = |v: Vec3| {
-            v.cross(&momentum) + stream.cross(&added.mass.component_mul(&v))
-        };
+        let moment = |v: Vec3| v.cross(&momentum) + stream.cross(&added.mass.component_mul(&v));
         for i in 0..3 {
             let square = -added.mass[i] * shift[i];
             let linear = turn.cross(&momentum)[i] - added.mass[i] * convected[i];
             q[(i, j)] = 2.0 * (s * s * square + s * linear);
             let square = -added.moment[i] * turn[i];
-            q[(3 + i, j)] = 2.0 * (s * s * square + s * moment(shift)[i] + moment(convected)[i]);
+            q[(3 + i, j)] =
+                2.0 * (s * s * square + s * moment(shift)[i] + moment(convected)[i]);
         }
     }
     q
@@ -190,7 +189,10 @@ pub fn free_roots(n: usize, goal: f64) -> Result<Vec<Row>, Fault> {
         let mut exact = [-pitch, -yaw, yaw, pitch];
         exact.sort_by(f64::total_cmp);
         let error = if found.len() == exact.len() {
-            let errors = found.iter().zip(exact).map(|(s, e)| (s - e).norm() / e.abs());
+            let errors = found
+                .iter()
+                .zip(exact)
+                .map(|(s, e)| (s - e).norm() / e.abs());
             errors.fold(0.0, f64::max)
         } else {
             f64::NAN
@@ -214,13 +216,17 @@ fn roots(mesh: &TriMesh, body: RigidBody) -> Result<Vec<c64>, Fault> {
     let q = |p: c64| {
         // Without a wake there is no branch cut; just above the axis Q is the same.
         let p = c64::new(p.re, p.im.max(1e-12));
-        transfer.q(p).map(|q| {
-            Mat::from_fn(6, 6, |i, j| q[(i, j)] * scales[i] * scales[j])
-        })
+        transfer
+            .q(p)
+            .map(|q| Mat::from_fn(6, 6, |i, j| q[(i, j)] * scales[i] * scales[j]))
     };
     let mut points = Vec::new();
     for k in (0..=8).map(|i| 0.05 * f64::from(i)) {
-        let q = if k == 0.0 { q(c64::new(0.0, 0.0))? } else { q(c64::new(0.0, k))? };
+        let q = if k == 0.0 {
+            q(c64::new(0.0, 0.0))?
+        } else {
+            q(c64::new(0.0, k))?
+        };
         points.push(GafPoint { g: 0.0, k, q });
     }
     let names: Vec<String> = RIGID_NAMES.map(str::to_owned).to_vec();

@@ -79,7 +79,10 @@ pub(crate) fn put(path: &Path, mark: &str, text: &str) -> std::io::Result<()> {
 }
 
 fn replaced(old: &str, mark: &str, text: &str) -> String {
-    let (open, close) = (format!("<!-- {mark} -->\n"), format!("<!-- end of {mark} -->\n"));
+    let (open, close) = (
+        format!("<!-- {mark} -->\n"),
+        format!("<!-- end of {mark} -->\n"),
+    );
     let block = format!("{open}{text}{close}");
     let (Some(from), Some(to)) = (old.find(&open), old.find(&close)) else {
         return format!("{}\n{block}", old.trim_end().to_owned() + "\n");

@@ -91,7 +91,10 @@ impl Validate {
     }
 
     fn figures(&self, file: &Path) -> Result<MeshFigures, ValidateError> {
-        if file.extension().is_some_and(|extension| extension == "json") {
+        if file
+            .extension()
+            .is_some_and(|extension| extension == "json")
+        {
             return Ok(MeshFigures::read(file)?);
         }
         let figures = MeshFigures::compute(file)?;
