@@ -77,7 +77,7 @@ fn worst_row_sum(mesh: &TriMesh) -> f64 {
 fn masses(mesh: &TriMesh) -> Result<Vec<[f64; 6]>, Fault> {
     let modes = rigid_modes(mesh, Frame::Body, Vec3::zeros());
     let solution = Setup {
-        wake: false,
+        trailing_edges: Some(&[]),
         ..Setup::new(mesh, &modes)
     }
     .solve()?;

@@ -54,7 +54,7 @@ pub enum Fault {
     },
 }
 
-/// A surface with its modes and stream, before the trailing edges are sought.
+/// A surface with its modes and stream.
 #[derive(Clone, Debug)]
 pub struct Setup<'a> {
     /// Closed surface.
@@ -65,8 +65,8 @@ pub struct Setup<'a> {
     pub flow: Flow,
     /// Reference semichord, m.
     pub semichord: f64,
-    /// Whether a wake leaves.
-    pub wake: bool,
+    /// Where wakes leave; sought by shape where not given.
+    pub trailing_edges: Option<&'a [TrailingEdge]>,
     /// Curve groups along which the wake's inner edge lies on a body; they begin with this.
     pub body_lines: Option<&'a str>,
     /// Moments are taken about this point, m.
@@ -81,7 +81,7 @@ impl<'a> Setup<'a> {
             modes,
             flow: Flow::default(),
             semichord: 1.0,
-            wake: true,
+            trailing_edges: None,
             body_lines: None,
             moment_point: Vec3::zeros(),
         }
@@ -92,10 +92,9 @@ impl<'a> Setup<'a> {
     /// # Errors
     /// What the solver refuses.
     pub fn solve(&self) -> Result<Solution, Fault> {
-        let trailing_edges = if self.wake {
-            edges(self.mesh)
-        } else {
-            Vec::new()
+        let found = match self.trailing_edges {
+            Some(given) => given.to_vec(),
+            None => edges(self.mesh),
         };
         let is_line = |curve: &&CurveGroup| {
             self.body_lines
@@ -110,7 +109,7 @@ impl<'a> Setup<'a> {
             .collect();
         let problem = Problem {
             mesh: self.mesh,
-            trailing_edges: &trailing_edges,
+            trailing_edges: &found,
             modes: self.modes,
             flow: self.flow,
             wake_direction: WakeDirection::Freestream,

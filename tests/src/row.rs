@@ -11,7 +11,7 @@ pub struct Row {
     pub figure: String,
     /// The error.
     pub error: f64,
-    /// What it may be at most.
+    /// What it may be at most; infinite for a figure given for information.
     pub goal: f64,
 }
 
@@ -23,7 +23,11 @@ impl Row {
 
     /// Cells of a Markdown table: case, mesh, figure, error, goal, verdict.
     pub fn markdown(&self) -> String {
-        let verdict = if self.holds() { "met" } else { "**not met**" };
+        let verdict = match self.holds() {
+            true if self.goal.is_infinite() => "",
+            true => "met",
+            false => "**not met**",
+        };
         format!(
             "| {} | {} | {} | {} | {} | {verdict} |",
             self.case,
@@ -45,7 +49,9 @@ pub fn report(rows: &[Row]) -> bool {
 
 /// In per cent where the goal is a matter of per cent.
 fn size(value: f64, goal: f64) -> String {
-    if goal >= 1e-3 {
+    if value.is_infinite() {
+        "–".to_owned()
+    } else if goal >= 1e-3 {
         format!("{:.2} %", 100.0 * value)
     } else {
         format!("{value:.1e}")

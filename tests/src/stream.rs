@@ -96,7 +96,7 @@ fn both_frames(mesh: &TriMesh, flow: Flow, semichord: f64) -> Result<TransferMod
     let setup = Setup {
         flow,
         semichord,
-        wake: false,
+        trailing_edges: Some(&[]),
         ..Setup::new(mesh, &modes)
     };
     Ok(setup.solve()?.transfer)
