@@ -63,9 +63,11 @@ impl Aircraft {
             modes: Some([1, elastic]),
             ..StructureSettings::default()
         })?;
-        let body = model
+        let mut body = model
             .rigid_body
             .ok_or_else(|| Fault::Surface("the modes hold no rigid body".into()))?;
+        // The finite-element model's centre of mass lies 1e-8 m beside the plane.
+        body.cg.y = 0.0;
         let mut modes = fladder_modal::rigid_modes(&body, &mesh.vertices);
         modes.extend(analytic_modes(&mesh));
         let components = structure.components.unwrap_or_default();
@@ -163,7 +165,7 @@ impl Aircraft {
         let (rigid, _) = self.coupling(&q, &exact);
         let (elastic, asymmetry) = self.coupling(&q, &shapes);
         let (even, _) = self.coupling(&q, &projected);
-        let by = "largest |Q_ij| across by max \\|Q\\|";
+        let by = "largest \\|Q_ij\\| across by max \\|Q\\|";
         Ok(vec![
             row(
                 "mesh its own mirror image",

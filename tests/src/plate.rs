@@ -9,7 +9,7 @@ use fladder_mesh::{Frame, SurfaceMode, TriMesh, Vec3};
 use crate::case::{Fault, Setup, mode};
 use crate::reference;
 use crate::row::{Row, mesh_size};
-use crate::wings::{Cells, Kind, THICK, THIN, plate_limit};
+use crate::wings::{Cells, Kind, LOW_FREQUENCY, THICK, THIN, plate_limit};
 
 /// The planforms of the reference files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -141,20 +141,16 @@ impl Plate {
         file: &str,
         case: &str,
         goal: impl Fn(f64) -> f64,
-        keep: impl Fn(f64, f64) -> bool,
     ) -> Result<Vec<Row>, Fault> {
         let mut rows: Vec<Row> = Vec::new();
         for (p, exact) in samples(file)? {
-            if !keep(p.re, p.im) {
-                continue;
-            }
             let error = (self.q(p)? - &exact).norm_max() / exact.norm_max();
             let (g, k) = (p.re, p.im);
             let place = format!("worst at g = {g:+.2}, k = {k:.2}");
-            let class = if k <= LOW {
-                format!("k ≤ {LOW}")
+            let class = if k <= LOW_FREQUENCY {
+                format!("k ≤ {LOW_FREQUENCY}")
             } else {
-                format!("k > {LOW}")
+                format!("k > {LOW_FREQUENCY}")
             };
             let case = format!("{case}, {class}");
             match rows.iter_mut().find(|row| row.case == case) {
@@ -172,9 +168,6 @@ impl Plate {
         Ok(rows)
     }
 }
-
-/// Reduced frequency up to which the goal is the stricter one.
-pub const LOW: f64 = 0.4;
 
 fn figure(place: &str) -> String {
     format!("largest error of Q by max \\|Q\\|, {place}")

@@ -3,10 +3,10 @@
 use clap::ValueEnum;
 use fladder_tests::aircraft::{Aircraft, workspace};
 use fladder_tests::case::Fault;
-use fladder_tests::plate::{LOW, Planform, Plate};
+use fladder_tests::plate::{Planform, Plate};
 use fladder_tests::row::Row;
 use fladder_tests::section::LongWing;
-use fladder_tests::wings::{Cells, Kind};
+use fladder_tests::wings::{Cells, Goals, Kind};
 use fladder_tests::{bodies, laplace, section, stream, wings};
 
 /// A part of the validation that can be run by itself.
@@ -30,10 +30,16 @@ pub(crate) enum Part {
     Aircraft,
 }
 
+/// Goals of steady wings.
+const STEADY: Goals = Goals {
+    slope: 0.01,
+    kutta: 0.01,
+};
+
 /// Cells of the fine wings.
 const WING: Cells = Cells {
-    chord: 32,
-    half_span: 20,
+    chord: 40,
+    half_span: 16,
 };
 
 impl Part {
@@ -116,8 +122,8 @@ impl Part {
                 rows.extend(stream::free_roots(16, 0.02)?);
             }
             Self::Wings => {
-                rows.extend(wings::plates(WING, |_| true, 0.01)?);
-                rows.extend(wings::thick(WING, 0.01)?);
+                rows.extend(wings::plates(WING, |_| true, STEADY)?);
+                rows.extend(wings::thick(WING, STEADY)?);
             }
             Self::Section => {
                 let wing = LongWing {
@@ -130,19 +136,19 @@ impl Part {
             Self::Plate => {
                 for kind in Kind::ALL {
                     let plate = Plate::new(Planform::Rectangular, kind, WING)?;
-                    let goal = |k: f64| lattice_goal(kind, k);
+                    let goal = |k: f64| kind.lattice_goal(k);
                     let case = format!("plate, {}", kind.name());
                     let file = "laplace_gaf_rect_ar8.csv";
-                    rows.extend(plate.compare(file, &case, goal, |_, _| true)?);
+                    rows.extend(plate.compare(file, &case, goal)?);
                 }
             }
             Self::Swept => {
                 for kind in Kind::ALL {
                     let plate = Plate::new(Planform::Swept, kind, WING)?;
-                    let goal = |k: f64| lattice_goal(kind, k);
+                    let goal = |k: f64| kind.lattice_goal(k);
                     let case = format!("swept plate, {}", kind.name());
                     let file = "dlm_gaf_agard_planform.csv";
-                    rows.extend(plate.compare(file, &case, goal, |_, _| true)?);
+                    rows.extend(plate.compare(file, &case, goal)?);
                 }
             }
             Self::Laplace => {
@@ -168,13 +174,5 @@ impl Part {
             }
         }
         Ok(rows)
-    }
-}
-
-fn lattice_goal(kind: Kind, k: f64) -> f64 {
-    match kind {
-        Kind::Structured if k <= LOW => 0.015,
-        Kind::Structured => 0.025,
-        Kind::Unstructured => 0.03,
     }
 }
