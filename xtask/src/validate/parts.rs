@@ -32,7 +32,8 @@ pub(crate) enum Part {
 
 /// Goals of steady wings.
 const STEADY: Goals = Goals {
-    slope: 0.01,
+    structured: 0.01,
+    unstructured: 0.01,
     kutta: 0.01,
 };
 
