@@ -172,8 +172,9 @@ fn points(damping: f64, axis: f64) -> Result<Vec<(c64, Loads)>, Fault> {
 /// information the 3 % section divided by its steady factor.
 ///
 /// Thickness changes the oscillating lift in another way than the steady one: at k = 1, where
-/// inertia of the fluid prevails, 3 % of it lags by 0.7° more and has no larger amplitude. So
-/// the factor, right for slow motion, leaves 3 % there, and the limit is what is judged.
+/// inertia of the fluid prevails, the lift of a 3 % section lags by 0.7° and is 0.7 % smaller
+/// than in the limit, not 2.3 % larger. So the factor, right for slow motion, leaves 3 % there,
+/// and the limit is what is judged.
 ///
 /// # Errors
 /// Reference file, shape or solver.

@@ -1,5 +1,6 @@
 //! `docs/validation.md`: one marked part a validation, so that one can be renewed alone.
 
+use super::parts::Part;
 use fladder_tests::convergence::Refinement;
 use fladder_tests::row::Row;
 use std::fmt::Write as _;
@@ -30,7 +31,7 @@ pub(crate) fn refinement(found: &Refinement, goals: &[f64]) -> String {
          span = area / chord) and the 20 largest entries of Q at k = 0.2. Extrapolated with \
          h ~ 1/√N and the order observed on the three finest meshes, in brackets, or 1 where \
          they show none. Beside each value its distance from the extrapolated one; for \
-         complex entries |Q| and the size of the complex distance. The meshes are of one \
+         complex entries \\|Q\\| and the size of the complex distance. The meshes are of one \
          generator; `scaneagle_3k.msh` and `scaneagle_10k.msh` are in `meshes/`, a finer one \
          is too large to be kept there.\n\n",
     );
@@ -72,10 +73,26 @@ pub(crate) fn refinement(found: &Refinement, goals: &[f64]) -> String {
     text
 }
 
-/// Puts a part into the document, in the place of the one with the same mark.
+/// Mark of the part on refinement.
+pub(crate) const REFINEMENT: &str = "refinement";
+
+/// Puts a part into the document, in the place of the one with the same mark; where there is
+/// no document, one with places for all parts is begun.
 pub(crate) fn put(path: &Path, mark: &str, text: &str) -> std::io::Result<()> {
-    let old = std::fs::read_to_string(path).unwrap_or_else(|_| HEAD.to_owned());
+    let old = if path.exists() {
+        std::fs::read_to_string(path)?
+    } else {
+        empty()
+    };
     std::fs::write(path, replaced(&old, mark, text))
+}
+
+/// The head and an empty place for each part, in order.
+fn empty() -> String {
+    let marks = Part::all().iter().map(|part| part.mark());
+    marks
+        .chain([REFINEMENT.to_owned()])
+        .fold(HEAD.to_owned(), |text, mark| replaced(&text, &mark, ""))
 }
 
 fn replaced(old: &str, mark: &str, text: &str) -> String {

@@ -85,7 +85,7 @@ impl Validate {
         let goals: Vec<f64> = found.meshes.iter().map(|(_, n)| goal(*n)).collect();
         let text = document::refinement(&found, &goals);
         println!("{text}");
-        self.put("refinement", &text)?;
+        self.put(document::REFINEMENT, &text)?;
         let met = |(mesh, goal): (usize, &f64)| found.worst(mesh) <= *goal;
         Ok(goals.iter().enumerate().all(met))
     }
