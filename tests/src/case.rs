@@ -1,8 +1,6 @@
 //! One way to pose a problem, and what can go wrong.
 
-use fladder_bem::{
-    BemError, Flow, LaplaceError, Problem, Silent, Solution, WakeDirection, solve,
-};
+use fladder_bem::{BemError, Flow, LaplaceError, Problem, Silent, Solution, solve};
 use fladder_mesh::shapes::ShapeError;
 use fladder_mesh::{
     CurveGroup, Frame, SurfaceMode, Topology, TrailingEdge, TriMesh, Vec3, trailing_edge,
@@ -108,14 +106,10 @@ impl<'a> Setup<'a> {
             .flat_map(|curve| curve.edges.iter().copied())
             .collect();
         let problem = Problem {
-            mesh: self.mesh,
-            trailing_edges: &found,
-            modes: self.modes,
             flow: self.flow,
-            wake_direction: WakeDirection::Freestream,
             body_lines: &body_lines,
-            semichord: self.semichord,
             moment_point: self.moment_point,
+            ..Problem::new(self.mesh, &found, self.modes, self.semichord)
         };
         Ok(solve(&problem, &Silent)?)
     }

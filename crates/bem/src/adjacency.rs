@@ -111,6 +111,14 @@ impl<'a> Adjacency<'a> {
         }
     }
 
+    /// At a vertex on an open rim, the neighbour along the rim from which its triangles lie
+    /// counter-clockwise; none inside the surface.
+    pub(crate) fn rim(&self, vertex: u32) -> Option<u32> {
+        self.neighbours(vertex)
+            .into_iter()
+            .find(|&v| self.left_of(vertex, v).is_some() && self.left_of(v, vertex).is_none())
+    }
+
     /// Groups into which the edges of `cuts` divide the triangles round `vertex`.
     ///
     /// Union–find over the edges that meet at the vertex; geometry has no say, since

@@ -13,6 +13,7 @@
 use crate::adjacency::Turn;
 use crate::body_path::{BodyPath, BodyPaths, Finish, Node, Tracer};
 use crate::body_trace::{Ordered, mean_edge, trace_back};
+use crate::image::{Image, on_plane};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap, HashMap, HashSet};
 
@@ -30,6 +31,10 @@ pub(crate) fn gather_nodes(
     let alone: Vec<usize> = (0..all.paths.len())
         .filter(|&p| all.paths[p].finish == Finish::Alone)
         .collect();
+    if tracer.image != Image::None {
+        add_plane_nodes(tracer, &mut all, &alone, &trailing);
+        return all;
+    }
     for group in groups(tracer, &all.paths, &alone, &trailing) {
         if group.len() > 1 {
             add_node(tracer, &mut all, group, &trailing);
@@ -169,12 +174,56 @@ fn add_node(
         extend(&mut all.paths[p], &trace_back(known, start, vertex));
         all.paths[p].finish = Finish::Node(all.nodes.len());
     }
-    let shares = shares(&all.paths, &group);
+    let shares = shares(&all.paths, &group, 2);
     all.nodes.push(Node {
         vertex,
         paths: group,
         shares,
     });
+}
+
+/// Nodes of a half model: lines end in its plane, led there over a base by the shortest
+/// line of mesh edges, and their images come from the other side. Of symmetric motion the
+/// jumps of a line and its image sum to zero by themselves and leave as they are; of
+/// antisymmetric motion the mean is that of the half's lines alone, all of it for one line.
+fn add_plane_nodes(
+    tracer: &Tracer<'_>,
+    all: &mut BodyPaths,
+    alone: &[usize],
+    trailing: &HashSet<u32>,
+) {
+    let is_in_plane = |v: u32| on_plane(&tracer.vertices[v as usize]);
+    let mut groups: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for &p in alone {
+        let end = all.paths[p].last();
+        if !is_in_plane(end) {
+            let known = Base::new(tracer, &[end], trailing).distances(end);
+            let nearest = known
+                .iter()
+                .filter(|(v, _)| is_in_plane(**v))
+                .map(|(&v, &(length, _))| (length, v))
+                .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            let Some((_, vertex)) = nearest else {
+                continue;
+            };
+            extend(&mut all.paths[p], &trace_back(&known, end, vertex));
+        }
+        groups.entry(all.paths[p].last()).or_default().push(p);
+    }
+    for (vertex, group) in groups {
+        let shares = match tracer.image {
+            Image::Odd => shares(&all.paths, &group, 1),
+            Image::None | Image::Even => group.iter().map(|&p| vec![(p, 1.0)]).collect(),
+        };
+        for &p in &group {
+            all.paths[p].finish = Finish::Node(all.nodes.len());
+        }
+        all.nodes.push(Node {
+            vertex,
+            paths: group,
+            shares,
+        });
+    }
 }
 
 /// Leads a line on, without loops.
@@ -191,8 +240,8 @@ fn extend(path: &mut BodyPath, further: &[u32]) {
 }
 
 /// ȷ̃ of each line in terms of all. Lines that arrive along one edge act as one; the first
-/// of them takes the difference.
-fn shares(paths: &[BodyPath], group: &[usize]) -> Vec<Vec<(usize, f64)>> {
+/// of them takes the difference; fewer edges than `least` leave as they arrive.
+fn shares(paths: &[BodyPath], group: &[usize], least: usize) -> Vec<Vec<(usize, f64)>> {
     let edge = |p: usize| paths[p].vertices[paths[p].vertices.len() - 2];
     let mut edges: Vec<u32> = group.iter().map(|&p| edge(p)).collect();
     edges.sort_unstable();
@@ -207,12 +256,12 @@ fn shares(paths: &[BodyPath], group: &[usize]) -> Vec<Vec<(usize, f64)>> {
                 .iter()
                 .filter_map(|&k| {
                     let own = if k == p { 1.0 } else { 0.0 };
-                    let mean = if is_first && edges.len() > 1 {
+                    let mean = if is_first && edges.len() >= least {
                         sign(&paths[p]) * sign(&paths[k]) / n
                     } else {
                         0.0
                     };
-                    (own != 0.0 || mean != 0.0).then_some((k, own - mean))
+                    (own != mean).then_some((k, own - mean))
                 })
                 .collect()
         })
@@ -247,7 +296,7 @@ mod tests {
     #[test]
     fn what_leaves_a_node_sums_to_zero() {
         let paths = [line(0, true, 1), line(1, false, 2), line(2, true, 3)];
-        let shares = shares(&paths, &[0, 1, 2]);
+        let shares = shares(&paths, &[0, 1, 2], 2);
         let leaving = |kappa: [f64; 3]| -> Vec<f64> {
             shares
                 .iter()
@@ -264,7 +313,7 @@ mod tests {
             assert!((a - b).abs() < 1e-15);
         }
         // Two lines: the mean of both.
-        let pair = super::shares(&paths[..2], &[0, 1]);
+        let pair = super::shares(&paths[..2], &[0, 1], 2);
         assert_eq!(pair, [[(0, 0.5), (1, 0.5)], [(0, 0.5), (1, 0.5)]]);
     }
 }

@@ -8,12 +8,14 @@
 //! * at a vertex of another trailing edge, whose sheet takes the jump up;
 //! * at a tail where others end too, or at a blunt base over which shortest lines of mesh
 //!   edges join them in one vertex: a *node*;
+//! * in the plane of symmetry of a half model, where its image ends too: a node as well;
 //! * alone.
 
 use crate::adjacency::{Adjacency, Turn, undirected};
 use crate::body_node::gather_nodes;
 use crate::body_trace::Downstream;
 use crate::error::BemError;
+use crate::image::Image;
 use fladder_mesh::{TrailingEdge, Vec3};
 use std::collections::{HashMap, HashSet};
 
@@ -144,6 +146,8 @@ pub(crate) struct Tracer<'a> {
     /// Edges of named body lines; they take the place of tracing where they start at a
     /// junction.
     pub(crate) named: &'a [[u32; 2]],
+    /// What the motion does under reflection, for half models.
+    pub(crate) image: Image,
 }
 
 impl Tracer<'_> {

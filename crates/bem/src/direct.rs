@@ -27,7 +27,7 @@ fn complex(matrix: &Mat<f64>) -> Mat<c64> {
 
 /// Q(p) of a problem whose surface has no body lines, by the full complex system.
 fn direct(problem: &Problem<'_>, p: c64) -> Mat<c64> {
-    let (surface, wake) = lay_out(problem).expect("wake");
+    let (surface, wake) = lay_out(problem, Image::None).expect("wake");
     let stream = problem.flow.stream();
     let galerkin = Galerkin::new(&surface, Image::None);
     let fields = ModeFields::new(

@@ -21,6 +21,8 @@ use faer::{Mat, c64};
 pub(crate) struct Prepared<O> {
     pub(crate) surface: CutSurface,
     pub(crate) wake: Wake,
+    /// The steady flow's, where its symmetry is another than the motion's.
+    flow_wake: Option<Wake>,
     /// K: +1 at upper, −1 at lower vertices.
     pub(crate) selector: Mat<f64>,
     pub(crate) fields: ModeFields,
@@ -45,10 +47,10 @@ impl Prepared<DenseOperator> {
     ) -> Result<Self, BemError> {
         check(problem)?;
         check_symmetry(problem)?;
-        let (surface, wake) = lay_out(problem)?;
-        let selector = selector(&surface);
         let symmetry = problem.symmetry;
         let (flow, motion) = (Image::of_flow(symmetry), Image::of_motion(symmetry));
+        let (surface, wake) = lay_out(problem, motion)?;
+        let selector = selector(&surface);
         let galerkin = Galerkin::new(&surface, motion);
         let fields = ModeFields::new(
             &galerkin,
@@ -58,6 +60,7 @@ impl Prepared<DenseOperator> {
             OnsetBasis::of(problem),
         );
         let sources = fields.sources(&galerkin);
+        let mut flow_wake = None;
         let (body, onsets) = if flow == motion {
             let all = concatenate(&[&sources, &onset_sources(&galerkin)]);
             let body = Body::factorise(galerkin, &all, progress)?;
@@ -67,13 +70,16 @@ impl Prepared<DenseOperator> {
             let even = Galerkin::new(&surface, flow);
             let onset = onset_sources(&even);
             let steady = Body::factorise(even, &onset, progress)?;
-            let onsets = steady.steady_onsets(&wake, &selector, 0, progress)?;
+            let (_, even_wake) = lay_out(problem, flow)?;
+            let onsets = steady.steady_onsets(&even_wake, &selector, 0, progress)?;
+            flow_wake = Some(even_wake);
             drop(steady);
             (Body::factorise(galerkin, &sources, progress)?, onsets)
         };
         let mut prepared = Self {
             surface,
             wake,
+            flow_wake,
             selector,
             fields,
             body,
@@ -90,6 +96,7 @@ impl Prepared<DenseOperator> {
         Prepared {
             surface: self.surface,
             wake: self.wake,
+            flow_wake: self.flow_wake,
             selector: self.selector,
             fields: self.fields,
             body: Body {
@@ -104,6 +111,11 @@ impl Prepared<DenseOperator> {
 }
 
 impl<O> Prepared<O> {
+    /// The wake of the steady flow.
+    pub(crate) fn flow_wake(&self) -> &Wake {
+        self.flow_wake.as_ref().unwrap_or(&self.wake)
+    }
+
     pub(crate) fn influence(&self) -> WakeInfluence<'_> {
         self.body.influence(&self.wake)
     }

@@ -126,8 +126,9 @@ fn residual(
         mesh: &mesh,
         ..*problem
     };
-    let (surface, wake) = lay_out(&moved)?;
-    let galerkin = Galerkin::new(&surface, Image::of_flow(problem.symmetry));
+    let image = Image::of_flow(problem.symmetry);
+    let (surface, wake) = lay_out(&moved, image)?;
+    let galerkin = Galerkin::new(&surface, image);
     let sources = onset_sources(&galerkin) * &steady.onsets;
     let assembly = galerkin.assemble(sources.as_ref(), &Silent)?;
     let n = galerkin.n_vertices;

@@ -3,6 +3,7 @@
 use crate::cut::CutSurface;
 use crate::dense::BodyOperator;
 use crate::error::BemError;
+use crate::image::Image;
 use crate::onset::OnsetBasis;
 use crate::prepare::{Prepared, concatenate};
 use crate::pressure::Functionals;
@@ -158,7 +159,7 @@ const FLOPS_PER_SECOND: f64 = 8e10;
 /// # Errors
 /// [`BemError`] where the trailing edges allow no wake.
 pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
-    let (surface, wake) = lay_out(problem)?;
+    let (surface, wake) = lay_out(problem, Image::of_motion(problem.symmetry))?;
     let sizes = sizes(&surface, &wake);
     let n = sizes.unknowns as f64;
     let points = 3.0 * sizes.triangles as f64;
@@ -208,14 +209,17 @@ fn rayon_threads() -> f64 {
 }
 
 /// The cut surface and the wake of a problem.
-pub(crate) fn lay_out(problem: &Problem<'_>) -> Result<(CutSurface, Wake), BemError> {
+pub(crate) fn lay_out(
+    problem: &Problem<'_>,
+    image: Image,
+) -> Result<(CutSurface, Wake), BemError> {
     cut_and_wake(
         problem.mesh,
         problem.trailing_edges,
         wake_direction(problem),
         problem.body_lines,
         problem.semichord,
-        problem.symmetry != Symmetry::None,
+        image,
     )
 }
 
@@ -304,7 +308,7 @@ pub fn solve(problem: &Problem<'_>, progress: &dyn Progress) -> Result<Solution,
     let report = SteadyReport {
         galerkin: &prepared.body.galerkin,
         surface: &prepared.surface,
-        wake: &prepared.wake,
+        wake: prepared.flow_wake(),
         onsets: &prepared.onsets,
         fields: &prepared.fields,
         stream: problem.flow.stream(),

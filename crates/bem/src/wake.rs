@@ -10,6 +10,7 @@ use crate::contour::Paths;
 use crate::cut::CutSurface;
 use crate::error::BemError;
 use crate::far_wake::FarWake;
+use crate::image::Image;
 use crate::panels::PanelSet;
 use crate::strike::Strikes;
 use crate::wake_builder::Builder;
@@ -84,14 +85,15 @@ impl Wake {
     }
 }
 
-/// The cut surface and its wake; `half`: the other half is an image in y = 0.
+/// The cut surface and its wake; `image`: whether the other half is an image in y = 0,
+/// and what the motion does there.
 pub(crate) fn cut_and_wake(
     mesh: &TriMesh,
     chains: &[TrailingEdge],
     direction: Vec3,
     body_lines: &[[u32; 2]],
     semichord: f64,
-    half: bool,
+    image: Image,
 ) -> Result<(CutSurface, Wake), BemError> {
     let adjacency = Adjacency::new(mesh.vertices.len(), &mesh.triangles);
     let tracer = Tracer {
@@ -100,7 +102,9 @@ pub(crate) fn cut_and_wake(
         chains,
         downstream: direction,
         named: body_lines,
+        image,
     };
+    let half = image != Image::None;
     let paths = tracer.trace()?;
     let surface = CutSurface::new(mesh, &adjacency, chains, &paths, half)?;
     let strikes = Strikes {
