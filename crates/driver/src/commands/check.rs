@@ -9,8 +9,8 @@ use crate::chain::surface::{Surface, Wanted, refusal};
 use crate::failure::Failure;
 use crate::report::{self, EdgeEnd};
 use fladder_bem::{Plan, Problem, WakeSheet};
-use fladder_mesh::judge::{Code, Fault, Severity};
 use fladder_mesh::Symmetry;
+use fladder_mesh::judge::{Code, Fault, Severity};
 use serde::Serialize;
 use std::path::Path;
 
