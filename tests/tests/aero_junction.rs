@@ -1,10 +1,8 @@
 //! The wake of a wing that ends on a fuselage, on the ScanEagle-like surface.
 
-mod common;
-
-use common::{edges, mode};
-use fladder_bem::{Flow, Problem, Silent, Solution, solve};
+use fladder_bem::{Flow, Solution};
 use fladder_mesh::{Frame, TriMesh, Vec3, read};
+use fladder_tests::case::{Setup, mode};
 use std::path::Path;
 
 fn aircraft() -> TriMesh {
@@ -12,21 +10,22 @@ fn aircraft() -> TriMesh {
     read::read_mesh(path, 1.0).expect("the committed mesh")
 }
 
-fn at_three_degrees(mesh: &TriMesh, body_lines: &[[u32; 2]]) -> Solution {
+/// With the body lines named in the mesh, or traced.
+fn at_three_degrees(mesh: &TriMesh, body_lines: Option<&str>) -> Solution {
     let modes = [
         mode(mesh, "rigid:z", Frame::Body, |_| Vec3::z()),
         mode(mesh, "rigid:y", Frame::Body, |_| Vec3::y()),
     ];
-    let edges = edges(mesh);
-    let problem = Problem {
+    let setup = Setup {
         flow: Flow {
             alpha: 3_f64.to_radians(),
             beta: 0.0,
         },
         body_lines,
-        ..Problem::new(mesh, &edges, &modes, 0.115)
+        semichord: 0.115,
+        ..Setup::new(mesh, &modes)
     };
-    solve(&problem, &Silent).expect("a sound aircraft")
+    setup.solve().expect("a sound aircraft")
 }
 
 /// The jump is carried along the body: no suction peak at junction or tail, no pressure
@@ -34,15 +33,9 @@ fn at_three_degrees(mesh: &TriMesh, body_lines: &[[u32; 2]]) -> Solution {
 #[test]
 fn a_junction_leaves_no_false_suction() {
     let mesh = aircraft();
-    let lines: Vec<[u32; 2]> = mesh
-        .curves
-        .iter()
-        .filter(|c| c.name.starts_with("bodywake"))
-        .flat_map(|c| c.edges.clone())
-        .collect();
     let (named, traced) = (
-        at_three_degrees(&mesh, &lines),
-        at_three_degrees(&mesh, &[]),
+        at_three_degrees(&mesh, Some("bodywake")),
+        at_three_degrees(&mesh, None),
     );
     let steady = &named.steady;
     let ratio = steady.lift_by_pressure / steady.lift_by_wake_jump;

@@ -20,19 +20,18 @@ fn wing_with_flap() -> String {
     let mesh = small_wing();
     let all = obj(&mesh);
     let is_flap = |t: usize| mesh.corners(t).iter().all(|p| p.x > 0.7);
-    let mut text: String = all
-        .lines()
-        .filter(|l| l.starts_with('v'))
-        .fold(String::new(), |text, line| text + line + "\n");
-    for (name, wanted) in [("wing", false), ("flap", true)] {
-        text += &format!("g {name}\n");
-        for (t, line) in all.lines().filter(|l| l.starts_with('f')).enumerate() {
-            if is_flap(t) == wanted {
-                text += &format!("{line}\n");
-            }
-        }
+    let lines = |kind: char| all.lines().filter(move |line| line.starts_with(kind));
+    let mut text: Vec<&str> = lines('v').collect();
+    for (name, wanted) in [("g wing", false), ("g flap", true)] {
+        text.push(name);
+        let faces = lines('f').enumerate();
+        text.extend(
+            faces
+                .filter(|(t, _)| is_flap(*t) == wanted)
+                .map(|(_, line)| line),
+        );
     }
-    text
+    text.join("\n") + "\n"
 }
 
 #[test]

@@ -1,6 +1,9 @@
-//! Chores: `cargo xtask mesh wing --chord 0.25 --span 2 wing.msh`.
+//! Chores: `cargo xtask mesh wing --chord 0.25 --span 2 wing.msh`, `cargo xtask validate`.
 
 mod mesh;
+mod validate;
+
+use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
@@ -16,18 +19,31 @@ enum Chore {
     /// Write the mesh of an analytic shape as Gmsh 4.1
     #[command(subcommand)]
     Mesh(mesh::Shape),
+    /// Measure the accuracy of the aerodynamics on fine meshes and write docs/validation.md
+    Validate(validate::Validate),
 }
 
-fn main() -> std::process::ExitCode {
-    let Chore::Mesh(shape) = Arguments::parse().chore;
-    match shape.write() {
-        Ok(said) => {
-            println!("{said}");
-            std::process::ExitCode::SUCCESS
-        }
-        Err(error) => {
-            eprintln!("{error}");
-            std::process::ExitCode::from(2)
-        }
+fn main() -> ExitCode {
+    match Arguments::parse().chore {
+        Chore::Mesh(shape) => match shape.write() {
+            Ok(said) => {
+                println!("{said}");
+                ExitCode::SUCCESS
+            }
+            Err(error) => refused(&error),
+        },
+        Chore::Validate(validate) => match validate.run() {
+            Ok(true) => ExitCode::SUCCESS,
+            Ok(false) => {
+                eprintln!("not all goals are met");
+                ExitCode::FAILURE
+            }
+            Err(error) => refused(&error),
+        },
     }
+}
+
+fn refused(error: &dyn std::error::Error) -> ExitCode {
+    eprintln!("{error}");
+    ExitCode::from(2)
 }

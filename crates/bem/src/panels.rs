@@ -20,7 +20,7 @@
 //!
 //! Solid angle: Van Oosterom & Strackee, IEEE Trans. Biomed. Eng. 30 (1983), eq. (8);
 //! the rest by integration by parts in the plane, as in Newman, J. Eng. Math. 20 (1986).
-//! A point closer to the plane than `COPLANAR` × longest edge counts as lying in it:
+//! A point as close to the plane as rounding (`COPLANAR`, `ROUNDING`) counts as lying in it:
 //! then z = Ω = 0, the principal value. The logarithm is bounded on an edge by
 //! `EDGE_FLOOR`.
 
@@ -29,11 +29,16 @@ use std::collections::HashMap;
 
 const INVERSE_FOUR_PI: f64 = 0.25 * std::f64::consts::FRAC_1_PI;
 
-/// Distance from the plane, in longest edges, below which a point lies in it.
+/// Distance from the plane, in longest edges, below which a point lies in it; [`ROUNDING`] is
+/// added to it.
 ///
-/// Collocation points lie in their own triangle up to rounding (1e-16); a
-/// neighbour at the smallest sensible fold (1e-6 rad) is far above.
-const COPLANAR: f64 = 1e-9;
+/// On irregular meshes some pair of triangle and point lies this close by chance, and Ω is
+/// wrong by as much: a row sum was 1.5e-9 off with 1e-9 here.
+const COPLANAR: f64 = 1e-12;
+
+/// Rounding of a point in its own triangle, by the largest coordinate: it is a sum of three
+/// products, from which a corner is taken.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// Smallest rₐ + r_b − l, in edge lengths; it is zero for a point on the edge.
 const EDGE_FLOOR: f64 = 1e-14;
@@ -316,7 +321,8 @@ impl Panel {
             edges: edge_ids,
             normal,
             twice_area,
-            coplanar: COPLANAR * lengths.into_iter().fold(0.0, f64::max),
+            coplanar: COPLANAR * lengths.into_iter().fold(0.0, f64::max)
+                + ROUNDING * p.iter().map(Vec3::amax).fold(0.0, f64::max),
             gradients,
             slopes: std::array::from_fn(|i| {
                 std::array::from_fn(|e| gradients[i].dot(&outward[e]))

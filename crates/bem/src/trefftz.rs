@@ -20,11 +20,15 @@
 
 use crate::far_wake::FarWake;
 use fladder_mesh::Vec3;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// A free edge whose jump is above this part of the largest one has a vortex of its own,
 /// and a concentrated vortex has no finite energy.
 const FREE_EDGE_JUMP: f64 = 1e-6;
+
+/// Streamlines closer than this part of the trace's distance from the origin are one.
+const SAME_PLACE: f64 = 1e-10;
 
 /// D_i/q∞ in m² from the jump of each streamline at unit speed; none where the sheet has a
 /// free edge with a jump, zero without a wake.
@@ -33,10 +37,16 @@ pub(crate) fn induced_drag(far: &FarWake, jump: impl Fn(u32) -> f64) -> Option<f
     let largest = jumps
         .iter()
         .fold(0.0_f64, |largest, k| largest.max(k.abs()));
-    let mut edges = vec![0.0; jumps.len()];
+    let (points, point_of) = points(far);
+    let mut edges = vec![0.0; points.len()];
+    let mut changes: BTreeMap<[usize; 2], f64> = BTreeMap::new();
     for &[a, b] in &far.strips {
-        edges[a as usize] += jumps[a as usize];
-        edges[b as usize] -= jumps[b as usize];
+        let (a, b) = (a as usize, b as usize);
+        let (from, to) = (point_of[a], point_of[b]);
+        edges[from] += jumps[a];
+        edges[to] -= jumps[b];
+        // Turned round, a strip has the other side up: its vortices stay what they are.
+        *changes.entry([from.min(to), from.max(to)]).or_insert(0.0) += jumps[b] - jumps[a];
     }
     if edges
         .iter()
@@ -44,14 +54,9 @@ pub(crate) fn induced_drag(far: &FarWake, jump: impl Fn(u32) -> f64) -> Option<f
     {
         return None;
     }
-    let trace: Vec<[f64; 2]> = plane(far);
-    let pieces: Vec<Piece> = far
-        .strips
-        .iter()
-        .filter_map(|&[a, b]| {
-            let (a, b) = (a as usize, b as usize);
-            Piece::new(trace[a], trace[b], jumps[b] - jumps[a])
-        })
+    let pieces: Vec<Piece> = changes
+        .into_iter()
+        .filter_map(|([a, b], change)| Piece::new(points[a], points[b], change))
         .collect();
     let mut energy = 0.0;
     for (i, one) in pieces.iter().enumerate() {
@@ -61,6 +66,29 @@ pub(crate) fn induced_drag(far: &FarWake, jump: impl Fn(u32) -> f64) -> Option<f
         }
     }
     Some(-energy / TAU)
+}
+
+/// Positions in the plane across the stream, and which of them each streamline has.
+///
+/// Sheets that meet, and copies of one sheet for jumps of different origin, have
+/// streamlines of their own in the same place.
+fn points(far: &FarWake) -> (Vec<[f64; 2]>, Vec<usize>) {
+    let all = plane(far);
+    let size = all.iter().flatten().fold(0.0_f64, |l, x| l.max(x.abs()));
+    let is_same =
+        |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) <= SAME_PLACE * size;
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    let point_of = all
+        .iter()
+        .map(|p| {
+            let known = points.iter().position(|q| is_same(p, q));
+            known.unwrap_or_else(|| {
+                points.push(*p);
+                points.len() - 1
+            })
+        })
+        .collect();
+    (points, point_of)
 }
 
 /// Positions of the streamlines in the plane across the stream.
@@ -219,6 +247,30 @@ mod tests {
         assert!((pair(1e3, 0.0) / single - 2.0).abs() < 1e-5);
         assert!((pair(1e-6, 0.0) / single - 4.0).abs() < 1e-4);
         assert!((pair(0.5, 0.0) / pair(0.5, 1.1) - 1.0).abs() < 1e-11);
+    }
+
+    /// A sheet in two halves with a streamline each where they meet, and its jump divided
+    /// over two copies, is the sheet.
+    #[test]
+    fn sheets_in_one_place_are_one() {
+        let y = cosine_stations(10);
+        let points: Vec<[f64; 2]> = y.iter().map(|y| [*y, 0.0]).collect();
+        let jump = |y: f64| (1.0 - y * y).max(0.0).sqrt();
+        let whole = induced_drag(&sheet(&points), |i| jump(y[i as usize])).unwrap();
+        let split: Vec<[f64; 2]> = [&points[..6], &points[5..], &points[5..]].concat();
+        let mut far = sheet(&split);
+        far.strips.retain(|s| !matches!(s, [5, 6] | [11, 12]));
+        // The third part, turned round.
+        for s in far.strips.iter_mut().filter(|s| s[0] > 11) {
+            s.reverse();
+        }
+        let share = |i: u32| match i {
+            0..6 => jump(y[i as usize]),
+            6..12 => 0.25 * jump(y[i as usize - 1]),
+            _ => -0.75 * jump(y[i as usize - 7]),
+        };
+        let drag = induced_drag(&far, share).unwrap();
+        assert!((drag / whole - 1.0).abs() < 1e-12, "{drag} {whole}");
     }
 
     #[test]

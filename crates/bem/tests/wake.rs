@@ -43,6 +43,7 @@ fn jumps_at_a_common_vertex_sum_to_zero() {
             };
             assert!((jump.jumps[end] - jump.jumps[next]).abs() < 0.25 * largest);
         }
+        assert_closed(&solution);
         let ratio = solution.steady.lift_by_pressure / solution.steady.lift_by_wake_jump;
         assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
     }
@@ -73,6 +74,14 @@ fn a_cruciform_tail_feels_incidence_as_it_feels_sideslip() {
     assert!(difference < 0.03);
 }
 
+/// Far downstream every edge of a sheet with a jump joins others whose jumps make up for it:
+/// the wake has a finite energy.
+fn assert_closed(solution: &fladder_bem::Solution) {
+    let drag = solution.steady.induced_drag;
+    println!("  induced drag {drag:?} m²");
+    assert!(drag.is_some_and(|d| d > 0.0));
+}
+
 /// What has to hold wherever wings end on a body.
 fn assert_sound(name: &str, mesh: TriMesh, notes: usize, suction: f64) -> Case {
     let case = Case::new(mesh, 0.4, 3.0);
@@ -83,6 +92,7 @@ fn assert_sound(name: &str, mesh: TriMesh, notes: usize, suction: f64) -> Case {
     assert!((ratio - 1.0).abs() < 0.07, "{ratio}");
     assert!(steady.lowest_pressure.0 > suction);
     assert_eq!(solution.notes.len(), notes);
+    assert_closed(&solution);
     for (edge, jump) in steady.wake_jumps.iter().enumerate() {
         let n = jump.jumps.len();
         let is_fin = case.at(edge, 0).y.abs().max(case.at(edge, n - 1).y.abs()) < 1e-9;
@@ -147,6 +157,7 @@ fn the_line_of_a_single_fin_ends_alone() {
     case.report("fin alone", &solution);
     assert_eq!(solution.notes.len(), 1);
     assert!(solution.notes[0].contains("ends alone"));
+    assert_eq!(solution.steady.induced_drag, None);
     let jumps = &solution.steady.wake_jumps[0].jumps;
     assert!(jumps.iter().filter(|k| k.abs() > 0.01).count() >= jumps.len() - 2);
     assert!(solution.steady.lowest_pressure.0 > -1.5);
@@ -161,6 +172,7 @@ fn a_jump_that_meets_a_trailing_edge_goes_into_its_sheet() {
     let case = Case::new(mesh, 0.4, 3.0);
     let solution = case.solve();
     case.report("one wing, knife", &solution);
+    assert_closed(&solution);
     let steady = &solution.steady;
     let ratio = steady.lift_by_pressure / steady.lift_by_wake_jump;
     assert!((ratio - 1.0).abs() < 0.07, "{ratio}");
@@ -393,6 +405,7 @@ fn a_body_without_lines_gives_the_same_forces() {
         }
         let solution = case.solve();
         case.report("scrambled", &solution);
+        assert_closed(&solution);
         let other = solution.transfer.q(c64::new(0.0, 0.3)).expect("Q");
         let difference = (other[(0, 0)] - q[(0, 0)]).norm() / q[(0, 0)].norm();
         println!("seed {seed}: Q_zz {difference:.1e} from the structured body's");

@@ -64,6 +64,10 @@ enum Command {
         /// Evaluate Q exactly at this point instead of on the grid; repeatable
         #[arg(long, value_name = "G,K", allow_hyphen_values = true, value_parser = laplace_point)]
         at: Vec<[f64; 2]>,
+        /// Write steady velocity and pressure, the unsteady pressure of every mode at the
+        /// points of --at, and the wake for ParaView into this folder; solves again
+        #[arg(long, value_name = "DIR")]
+        vtu: Option<PathBuf>,
     },
     /// Eigenvalue sweeps only, from cached forces or from gaf.file
     Sweep {
@@ -214,8 +218,13 @@ fn run(cli: Cli) -> Result<(), Failure> {
     let session = commands::Session { common, console };
     match cli.command {
         Command::Run { case, method } => commands::run(&session, &case, method)?,
-        Command::Gaf { case, json, at } => {
-            commands::gaf(&session, &case, json.as_deref(), &at)?;
+        Command::Gaf {
+            case,
+            json,
+            at,
+            vtu,
+        } => {
+            commands::gaf(&session, &case, json.as_deref(), &at, vtu.as_deref())?;
         }
         Command::Sweep { case, json, method } => {
             commands::sweep(&session, &case, json.as_deref(), method)?;

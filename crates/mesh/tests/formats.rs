@@ -294,7 +294,7 @@ fn ply_of_vtk_gives_the_box() {
         let loaded = load(data(name), 1.0).unwrap();
         assert_eq!(loaded.format, Format::Ply);
         assert_is_the_box(&loaded.mesh, 1e-6);
-        assert_eq!(loaded.mesh.triangles.len(), 78 + 2 * 22);
+        assert_eq!(loaded.mesh.triangles.len(), 70 + 2 * 11);
     }
 }
 
@@ -333,7 +333,7 @@ fn nastran_in_small_large_and_free_fields_gives_the_box() {
         // Eight columns hold six digits.
         let tolerance = if name.contains("small") { 1e-5 } else { 1e-9 };
         assert_is_the_box(&mesh, tolerance);
-        assert_eq!(mesh.triangles.len(), 78 + 2 * 22);
+        assert_eq!(mesh.triangles.len(), 70 + 2 * 11);
         assert!(mesh.surface("pshell_7").is_some());
     }
     // All free, a card that goes on, comments, lines for a curve group, no frame.

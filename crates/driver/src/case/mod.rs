@@ -18,7 +18,7 @@ pub use flight::{Flight, Range, Refine, Speeds, Stability, Thrust, Trim};
 pub use one_or_many::OneOrMany;
 pub use source::Places;
 pub use structure::{
-    DampingModel, Inertia, Matrices, OtherSymmetry, RigidBody, Structure, Units,
+    DampingModel, Inertia, Matrices, OtherSymmetry, RigidBody, ShapeChange, Structure, Units,
 };
 
 use crate::failure::Failure;

@@ -33,6 +33,9 @@ pub struct Structure {
     /// elastic modes.
     #[serde(default = "yes")]
     pub pressure_turning: bool,
+    /// Whether elastic columns have the influences of the deformed surface.
+    #[serde(default)]
+    pub shape_change: ShapeChange,
     /// First and last elastic mode, from 1.
     pub modes: Option<[usize; 2]>,
     /// Structural damping coefficient, one or one per elastic mode.
@@ -79,6 +82,17 @@ pub enum OtherSymmetry {
     Refuse,
     /// They are left out.
     LeaveOut,
+}
+
+/// How the columns of elastic modes follow the shape.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ShapeChange {
+    /// Unknowns carried with the surface, influences unchanged.
+    #[default]
+    Attached,
+    /// Influences of the deformed surface, by differences: two assemblies more a mode.
+    Exact,
 }
 
 /// How structural damping enters.

@@ -128,7 +128,7 @@ impl Derivatives {
             .iter()
             .map(|&j| aircraft.modes[j].name.clone())
             .collect();
-        made.neutral_point = reference.moment_point[0] + made.neutral_point;
+        made.neutral_point += reference.moment_point[0];
         Ok(Some(made))
     }
 }

@@ -6,7 +6,7 @@
 use super::aircraft::Aircraft;
 use super::memory::{bytes_in_words, usable_bytes};
 use crate::cache::{Cache, Key, KeyBuilder, Stored};
-use crate::case::{CaseFile, WakeDirection};
+use crate::case::{self, CaseFile, WakeDirection};
 use crate::failure::Failure;
 use crate::gaf_json::{self, Document, Frame, Sample};
 use crate::terminal::{Bar, Console, warn};
@@ -65,6 +65,10 @@ pub(crate) fn problem<'a>(file: &CaseFile, aircraft: &'a Aircraft) -> Problem<'a
     let case = &file.case;
     Problem {
         turning: &aircraft.turning,
+        shape_change: match case.structure.as_ref().map(|given| given.shape_change) {
+            Some(case::ShapeChange::Exact) => fladder_bem::ShapeChange::Exact,
+            _ => fladder_bem::ShapeChange::Attached,
+        },
         flow: Flow {
             alpha: case.flow.alpha_deg.to_radians(),
             beta: case.flow.beta_deg.to_radians(),
@@ -118,6 +122,9 @@ pub(crate) fn key(file: &CaseFile, problem: &Problem<'_>) -> Key {
     // A whole model has the key it had before there were halves.
     if problem.symmetry.is_half() {
         builder = builder.field("symmetry", problem.symmetry.word().as_bytes());
+    }
+    if problem.shape_change == fladder_bem::ShapeChange::Exact {
+        builder = builder.field("shape change", b"exact");
     }
     for chain in problem.trailing_edges {
         builder = builder
@@ -175,6 +182,7 @@ pub(crate) fn obtain(
     }
     let plan = fladder_bem::plan(&problem).map_err(|error| unsolved(file, &error))?;
     refuse_too_large(file, &plan)?;
+    console.notes(&guarded(file, &problem, &plan)?);
     let seconds = plan.core_seconds / rayon::current_num_threads() as f64;
     console.say(format!(
         "computing forces: {} unknowns, {} wake elements, about {} and {:.0} s",
@@ -201,6 +209,29 @@ pub(crate) fn obtain(
         key,
         origin: Origin::Computed(start.elapsed()),
         stored,
+    })
+}
+
+/// What the mesh does not resolve of the case's grid, as warnings.
+///
+/// # Errors
+/// A motion too fast for the mesh.
+pub(crate) fn guarded(
+    file: &CaseFile,
+    problem: &Problem<'_>,
+    plan: &Plan,
+) -> Result<Vec<String>, Failure> {
+    let largest = grid(file)
+        .iter()
+        .map(|[g, k]| g.hypot(*k))
+        .fold(0.0, f64::max);
+    fladder_bem::guards(problem, plan, largest).map_err(|error| {
+        Failure::input(
+            error.to_string(),
+            file.places.of("gaf.k"),
+            "the wave that motion leaves on the surface must be resolved by its triangles",
+            "refine the mesh along the stream, or lower the largest k and |g|",
+        )
     })
 }
 

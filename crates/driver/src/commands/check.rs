@@ -145,7 +145,11 @@ fn look_further(
             report::transfer(console, aircraft.transfer.as_ref());
             findings.modes = aircraft.mode_names();
             let problem = own_forces::problem(file, &aircraft);
-            fladder_bem::plan(&problem).map_err(|error| own_forces::unsolved(file, &error))?
+            let mut plan = fladder_bem::plan(&problem)
+                .map_err(|error| own_forces::unsolved(file, &error))?;
+            plan.notes
+                .extend(own_forces::guarded(file, &problem, &plan)?);
+            plan
         }
         None => bare_plan(surface)?,
     };

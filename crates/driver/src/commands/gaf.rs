@@ -1,10 +1,13 @@
 //! `fladder gaf`: forces into the cache, and on request into a file.
 
 use super::Session;
+use crate::case::CaseFile;
 use crate::chain::aircraft::Aircraft;
 use crate::chain::{forces, own_forces};
 use crate::failure::Failure;
 use crate::report;
+use crate::terminal::Bar;
+use faer::c64;
 use std::path::Path;
 
 pub(crate) fn gaf(
@@ -12,6 +15,7 @@ pub(crate) fn gaf(
     path: &Path,
     json: Option<&Path>,
     at: &[[f64; 2]],
+    vtu: Option<&Path>,
 ) -> Result<(), Failure> {
     let file = session.case(path)?;
     let console = &session.console;
@@ -32,6 +36,9 @@ pub(crate) fn gaf(
     report::wake_jumps(console, &own.stored.solution.steady);
     report::steady_forces(console, &aircraft, &own.stored.solution.steady);
     session.derivatives(&file, &aircraft, &own, session.common.out.as_deref())?;
+    if let Some(folder) = vtu {
+        pictures(session, &file, &aircraft, at, folder)?;
+    }
     if json.is_none() && at.is_empty() {
         return Ok(());
     }
@@ -53,4 +60,28 @@ pub(crate) fn gaf(
         }
         None => Ok(()),
     }
+}
+
+/// The flow on the surface for ParaView.
+fn pictures(
+    session: &Session,
+    file: &CaseFile,
+    aircraft: &Aircraft,
+    at: &[[f64; 2]],
+    folder: &Path,
+) -> Result<(), Failure> {
+    let problem = own_forces::problem(file, aircraft);
+    let plan = fladder_bem::plan(&problem).map_err(|e| own_forces::unsolved(file, &e))?;
+    let points: Vec<c64> = at.iter().map(|&[g, k]| c64::new(g, k)).collect();
+    let bar = Bar::new(session.console.is_quiet());
+    let flow = fladder_bem::surface_flow(&problem, &points, &bar)
+        .map_err(|error| own_forces::unsolved(file, &error))?;
+    bar.clear();
+    let names = aircraft.mode_names();
+    let files = report::flow_pictures(&aircraft.surface, &plan.wake, &flow, &names)
+        .map_err(|error| Failure::io("draw the flow", folder, &error))?;
+    for (name, content) in files {
+        session.write(&folder.join(name), content)?;
+    }
+    Ok(())
 }

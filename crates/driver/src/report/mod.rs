@@ -14,7 +14,7 @@ pub(crate) use csv::roots_csv;
 pub(crate) use date::utc;
 pub(crate) use derivatives::{derivatives, derivatives_csv, document as derivatives_document};
 pub(crate) use forces::{own_forces, sample, steady_forces, wake_jumps};
-pub(crate) use pictures::{EdgeEnd, ends, pictures};
+pub(crate) use pictures::{EdgeEnd, ends, flow_pictures, pictures};
 pub(crate) use roots::{conditions, roots};
 pub(crate) use structure::{modes_summary, structure, transfer};
 pub(crate) use surface::surface;

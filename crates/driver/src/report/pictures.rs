@@ -1,7 +1,7 @@
 //! What is computed on, as files for ParaView.
 
 use crate::chain::surface::Surface;
-use fladder_bem::WakeSheet;
+use fladder_bem::{SurfaceFlow, WakeSheet};
 use fladder_mesh::vtu::{Field, Grid, vtu};
 use fladder_mesh::{Topology, TrailingEdge, Vec3, trailing_edge};
 
@@ -23,6 +23,50 @@ pub(crate) fn pictures(
     ];
     if let Some(sheet) = sheet {
         files.push(("wake.vtu", wake(surface, sheet)?));
+    }
+    Ok(files)
+}
+
+/// The flow on the surface: `flow.vtu` with cell data `velocity` (V₀/U) and `cp`,
+/// `pressure_gG_kK.vtu` for each point p with `MODE_re` and `MODE_im` of every mode (c_p
+/// per unit of the mode), and the wake.
+pub(crate) fn flow_pictures(
+    surface: &Surface,
+    sheet: &WakeSheet,
+    flow: &SurfaceFlow,
+    modes: &[String],
+) -> std::io::Result<Vec<(String, Vec<u8>)>> {
+    let velocities = flow.velocity.iter().map(|&v| Vec3::from(v)).collect();
+    let on_surface = |fields: Vec<Field>| {
+        file(&Grid {
+            points: &surface.mesh.vertices,
+            triangles: &surface.mesh.triangles,
+            cell_data: fields,
+            ..Grid::default()
+        })
+    };
+    let steady = vec![
+        Field::vectors("velocity", velocities),
+        Field::scalars("cp", flow.pressure.clone()),
+    ];
+    let mut files = vec![
+        ("flow.vtu".to_owned(), on_surface(steady)?),
+        ("wake.vtu".to_owned(), wake(surface, sheet)?),
+    ];
+    for unsteady in &flow.unsteady {
+        let fields = modes
+            .iter()
+            .zip(&unsteady.pressure)
+            .flat_map(|(name, values)| {
+                let part = |f: fn(&faer::c64) -> f64| values.iter().map(f).collect();
+                [
+                    Field::scalars(format!("{name}_re"), part(|c| c.re)),
+                    Field::scalars(format!("{name}_im"), part(|c| c.im)),
+                ]
+            })
+            .collect();
+        let name = format!("pressure_g{}_k{}.vtu", unsteady.p.re, unsteady.p.im);
+        files.push((name, on_surface(fields)?));
     }
     Ok(files)
 }

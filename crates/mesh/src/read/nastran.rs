@@ -77,7 +77,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Draft, Malformed> {
             WRITE_AGAIN,
         ));
     }
-    reader.finish()
+    Ok(reader.finish())
 }
 
 /// A card with its continuations.
@@ -227,7 +227,7 @@ impl Reader {
         Ok(())
     }
 
-    fn finish(mut self) -> Result<Draft, Malformed> {
+    fn finish(mut self) -> Draft {
         let mut missing = Vec::new();
         for (corners, property, line) in std::mem::take(&mut self.elements) {
             let found: Vec<u32> = corners.iter().map(|id| self.vertex(*id)).collect();
@@ -261,7 +261,7 @@ impl Reader {
             .map(|(name, count)| format!("{count} of {name}"))
             .collect();
         self.draft.note_places("cards that are not read", &elements);
-        Ok(self.draft)
+        self.draft
     }
 
     fn vertex(&self, id: u64) -> u32 {

@@ -4,9 +4,9 @@
 //! `z` of `vertex` and the list `vertex_indices` (or `vertex_index`) of `face`; all else is
 //! stepped over. Polygons are cut into triangles. The format has no groups.
 
-use super::MISSING_VERTEX;
 use super::cursor::{Cursor, Malformed, WRITE_AGAIN};
 use super::draft::Draft;
+use super::{MISSING_VERTEX, Place};
 use crate::Vec3;
 
 /// Corners of a polygon: more come from a damaged count.
@@ -101,13 +101,19 @@ fn header(cursor: &mut Cursor) -> Result<(Order, Vec<Element>), Malformed> {
     let mut elements: Vec<Element> = Vec::new();
     // The word `ply`.
     cursor.line();
+    let mut number = 1;
     loop {
+        number += 1;
         let Some(line) = cursor.line() else {
             return Err(cursor.fault("the header has no `end_header`", WRITE_AGAIN));
         };
         let line = String::from_utf8_lossy(line);
         let words: Vec<&str> = line.split_whitespace().collect();
-        let wrong = |what: String| cursor.fault(what, "correct the header");
+        let wrong = |what: String| Malformed {
+            place: Place::Line(number),
+            what,
+            remedy: "correct the header".into(),
+        };
         match words[..] {
             ["end_header"] => break,
             ["format", name, "1.0"] => {
