@@ -577,7 +577,6 @@ fn half_an_aircraft_without_a_wake_has_the_forces_of_the_whole() {
 /// Where the lines of port and starboard meet at the tail, the sheet of a half ends
 /// in the plane with the mean of its jump and that of its image.
 #[test]
-#[ignore = "a body line that ends in the plane of a half model is taken for one that ends alone"]
 fn half_an_aircraft_has_the_forces_of_the_whole() {
     aircraft_against_halves("required");
 }

@@ -31,6 +31,8 @@ pub(crate) const KEYS: &[&str] = &[
     "structure.axes",
     "structure.origin",
     "structure.half",
+    "structure.pressure_turning",
+    "structure.shape_change",
     "structure.other_symmetry",
     "structure.modes",
     "structure.damping",
