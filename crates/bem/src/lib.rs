@@ -14,7 +14,7 @@
 //! | `panels` | influence of flat triangles |
 //! | `adjacency`, `cut` | surface cut open along trailing edges |
 //! | `body_path`, `body_trace`, `body_node`, `carry` | lines that carry a jump down a body |
-//! | `stations`, `wake`, `wake_builder`, `sheet_lines`, `wake_sheet` | the sheet and what jump it carries |
+//! | `stations`, `wake`, `wake_builder`, `wake_jumps`, `sheet_lines`, `wake_sheet` | the sheet and what jump it carries |
 //! | `strike` | sheets that run into bodies |
 //! | `contour`, `far_wake` | its semi-infinite part on a path in the complex plane |
 //! | `galerkin`, `near_field`, `dense` | the equations and their factorisation |
@@ -64,6 +64,7 @@ mod trefftz;
 mod wake;
 mod wake_builder;
 mod wake_influence;
+mod wake_jumps;
 mod wake_sheet;
 
 pub use error::{BemError, LaplaceError};

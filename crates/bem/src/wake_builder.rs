@@ -18,16 +18,14 @@ use crate::panels::PanelSet;
 use crate::sheet_lines::{Layer, SheetLine, Source};
 use crate::stations::{RowLaw, stations};
 use crate::strike::Strikes;
-use crate::wake::{JumpSheet, NO_SLOT, Slot, Wake};
+use crate::wake::{JumpSheet, Slot, Wake};
+use crate::wake_jumps::SAME_ORIGIN;
 use crate::wake_sheet::{JunctionLine, WakeSheet};
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
 /// Distance of the far part behind the last body point, in semichords.
 const FAR_MARGIN: f64 = 0.6;
-
-/// Origins closer than this part of the margin are one.
-const SAME_ORIGIN: f64 = 1e-9;
 
 /// Everything of a wake while it is being laid out.
 pub(crate) struct Builder<'a> {
@@ -38,23 +36,17 @@ pub(crate) struct Builder<'a> {
     pub(crate) direction: Vec3,
     pub(crate) law: RowLaw,
     pub(crate) stations: Vec<f64>,
-    margin: f64,
+    pub(crate) margin: f64,
     /// Whether the other half is an image.
     half: bool,
-    threads: Vec<Jump>,
-    thread_of: HashMap<Vec<(usize, u64)>, usize>,
-    slots: Vec<Slot>,
-    slot_of: HashMap<(usize, u64), u32>,
+    pub(crate) threads: Vec<Jump>,
+    pub(crate) thread_of: HashMap<Vec<(usize, u64)>, usize>,
+    pub(crate) slots: Vec<Slot>,
+    pub(crate) slot_of: HashMap<(usize, u64), u32>,
     pub(crate) far: FarWake,
     pub(crate) far_threads: Vec<usize>,
     pub(crate) sheet: Layer,
     notes: Vec<String>,
-}
-
-/// Jumps that started at one distance, as weights of the lines' jumps.
-struct Origin {
-    xi: f64,
-    shares: Vec<(usize, f64)>,
 }
 
 impl<'a> Builder<'a> {
@@ -136,80 +128,6 @@ impl<'a> Builder<'a> {
             }
         }
         sum / (2 * chain.upper.len()) as f64
-    }
-
-    /// ξ of a point for the jump of a body line.
-    pub(crate) fn distance(&self, path: usize, point: Vec3) -> f64 {
-        let junction = self.position(self.paths.paths[path].vertices[0]);
-        (point - junction).dot(&self.direction)
-    }
-
-    /// The jump that a body line carries, as weights of columns.
-    fn path_jump(&self, path: usize) -> &Jump {
-        let end = self.paths.paths[path].end;
-        let jumps = &self.surface.chain_jumps[end.chain];
-        &jumps[if end.last { jumps.len() - 1 } else { 0 }]
-    }
-
-    /// Number of the thread with this jump.
-    pub(crate) fn thread(&mut self, jump: &[(usize, f64)]) -> usize {
-        let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
-        for &(column, weight) in jump {
-            *sum.entry(column).or_insert(0.0) += weight;
-        }
-        let jump: Jump = sum.into_iter().filter(|(_, w)| *w != 0.0).collect();
-        let key = jump.iter().map(|&(c, w)| (c, w.to_bits())).collect();
-        let threads = &mut self.threads;
-        *self.thread_of.entry(key).or_insert_with(|| {
-            threads.push(jump);
-            threads.len() - 1
-        })
-    }
-
-    /// Thread of a sum of body lines' jumps.
-    fn shared_thread(&mut self, shares: &[(usize, f64)]) -> usize {
-        let jump: Jump = shares
-            .iter()
-            .flat_map(|&(path, share)| {
-                self.path_jump(path)
-                    .iter()
-                    .map(move |&(column, weight)| (column, share * weight))
-            })
-            .collect();
-        self.thread(&jump)
-    }
-
-    pub(crate) fn slot(&mut self, thread: usize, xi: f64) -> u32 {
-        if self.threads[thread].is_empty() {
-            return NO_SLOT;
-        }
-        let slots = &mut self.slots;
-        *self
-            .slot_of
-            .entry((thread, xi.to_bits()))
-            .or_insert_with(|| {
-                slots.push(Slot { thread, xi });
-                slots.len() as u32 - 1
-            })
-    }
-
-    /// Sorts jumps at a point by how far they have come.
-    fn origins(&self, point: Vec3, shares: &[(usize, f64)]) -> Vec<Origin> {
-        let mut origins: Vec<Origin> = Vec::new();
-        for &(path, share) in shares {
-            let xi = self.distance(path, point);
-            let same = origins
-                .iter_mut()
-                .find(|o| (o.xi - xi).abs() < SAME_ORIGIN * self.margin);
-            match same {
-                Some(origin) => origin.shares.push((path, share)),
-                None => origins.push(Origin {
-                    xi,
-                    shares: vec![(path, share)],
-                }),
-            }
-        }
-        origins
     }
 
     pub(crate) fn build(mut self, strikes: &Strikes<'_>) -> Result<Wake, BemError> {
@@ -391,36 +309,6 @@ impl<'a> Builder<'a> {
                 self.strip([&pair[0], &pair[1]], seen);
             }
         }
-    }
-
-    /// Slots on the corners of the body's triangles, a triangle as often as one of its
-    /// corners has slots.
-    fn body_jumps(&mut self) -> Vec<(u32, [u32; 3])> {
-        let mut at: BTreeMap<(u32, usize), Vec<(usize, f64)>> = BTreeMap::new();
-        for share in &self.surface.carried {
-            at.entry((share.triangle, share.corner))
-                .or_default()
-                .push((share.path, share.weight));
-        }
-        let mut layers: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
-        for ((triangle, corner), shares) in at {
-            let point = self.mesh.corners(triangle as usize)[corner];
-            for origin in self.origins(point, &shares) {
-                let thread = self.shared_thread(&origin.shares);
-                let slot = self.slot(thread, origin.xi);
-                let own = layers.entry(triangle).or_default();
-                let free = own.iter().position(|slots| slots[corner] == NO_SLOT);
-                let layer = free.unwrap_or(own.len());
-                if layer == own.len() {
-                    own.push([NO_SLOT; 3]);
-                }
-                own[layer][corner] = slot;
-            }
-        }
-        layers
-            .into_iter()
-            .flat_map(|(t, slots)| slots.into_iter().map(move |s| (t, s)))
-            .collect()
     }
 
     fn visible(&self) -> WakeSheet {
