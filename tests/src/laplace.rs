@@ -56,11 +56,11 @@ pub fn analytic(case: &str, mesh: &str, transfer: &TransferModel) -> Result<Vec<
 
 fn worst(
     transfer: &TransferModel,
-    angles_deg: impl Iterator<Item = f64> + Clone,
+    angles_deg: impl IntoIterator<Item = f64>,
 ) -> Result<f64, Fault> {
     let mut worst = 0.0_f64;
-    for size in SIZES {
-        for angle in angles_deg.clone() {
+    for angle in angles_deg {
+        for size in SIZES {
             let p = c64::from_polar(size, angle.to_radians());
             worst = worst.max(residual(transfer, p)?);
         }

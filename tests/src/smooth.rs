@@ -20,7 +20,7 @@ const FITTED: f64 = 1e-11;
 /// largest are rounding and left out; so is the last sample, beyond which there is none.
 pub fn worst_prediction(k: &[f64], q: &[Mat<c64>], floor: f64) -> (f64, [usize; 2], f64) {
     let (rows, columns) = q.first().map_or((0, 0), |q| (q.nrows(), q.ncols()));
-    let largest = q.iter().map(|q| q.norm_max()).fold(0.0, f64::max);
+    let largest = q.iter().map(Mat::norm_max).fold(0.0, f64::max);
     let entries: Vec<[usize; 2]> = (0..rows * columns).map(|e| [e % rows, e / rows]).collect();
     let worst: Vec<(f64, [usize; 2], f64)> = entries
         .par_iter()
