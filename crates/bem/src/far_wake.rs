@@ -69,12 +69,30 @@ impl FarWake {
             let across = (offset - along * self.direction).norm();
             distances.extend(nodes.iter().map(|xi| {
                 let zeta = xi - along;
-                let below = (zeta - c64::new(0.0, across)).sqrt();
-                let above = (zeta + c64::new(0.0, across)).sqrt();
+                let below = root(zeta - c64::new(0.0, across));
+                let above = root(zeta + c64::new(0.0, across));
                 c64::new(1.0, 0.0) / (below * above)
             }));
         }
     }
+}
+
+/// Principal square root without angles: |z| from the squares, which cannot overflow for
+/// lengths, and the smaller part from the larger by Im z = 2 Re √z Im √z. Half of a whole
+/// computation went into the polar form.
+fn root(z: c64) -> c64 {
+    let size = (z.re * z.re + z.im * z.im).sqrt();
+    let larger = (0.5 * (size + z.re.abs())).sqrt();
+    if larger == 0.0 {
+        return c64::new(0.0, 0.0);
+    }
+    let smaller = 0.5 * z.im.abs() / larger;
+    let (re, im) = if z.re >= 0.0 {
+        (larger, smaller)
+    } else {
+        (smaller, larger)
+    };
+    c64::new(re, im.copysign(z.im))
 }
 
 /// One strip seen from one point.
@@ -114,5 +132,22 @@ impl Strip {
         let moment = (inverse[0] - inverse[1]) / self.span_squared;
         let second = moment + foot * whole;
         [(whole - second) * self.height, second * self.height]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_root_is_the_principal_one() {
+        for degrees in (-179..=179).step_by(7) {
+            for size in [1e-6, 1.0, 3e4] {
+                let z = c64::from_polar(size, f64::from(degrees).to_radians());
+                let (found, wanted) = (root(z), z.sqrt());
+                assert!((found - wanted).norm() < 4e-16 * wanted.norm(), "{z}");
+            }
+        }
+        assert_eq!(root(c64::new(0.0, 0.0)), c64::new(0.0, 0.0));
     }
 }

@@ -8,7 +8,7 @@ use crate::solve::Problem;
 use crate::transfer::TransferModel;
 use crate::wake::Wake;
 use crate::wake_influence::WakeBlocks;
-use faer::{Mat, c64};
+use faer::Mat;
 use fladder_mesh::Symmetry;
 
 /// Pressure coefficient against the pressure in units of ρU²: c_p = 2p.
@@ -38,7 +38,7 @@ impl Reduction<'_> {
             b0.iter().map(|b| block(&(p.transpose() * b))).collect()
         };
         let p0 = &functionals.p0;
-        let far = |path: &Path, values: &Mat<c64>| far_blocks(self.wake, path, values, columns);
+        let far = |path: &Path, values: &Mat<f64>| far_blocks(self.wake, path, values, columns);
         let paths = &self.wake.paths;
         TransferModel {
             semichord: self.problem.semichord,
@@ -112,7 +112,7 @@ fn near_blocks(wake: &Wake, near: &Mat<f64>) -> NearBlocks {
     blocks
 }
 
-fn far_blocks(wake: &Wake, path: &Path, far: &Mat<c64>, columns: usize) -> FarBlocks {
+fn far_blocks(wake: &Wake, path: &Path, far: &Mat<f64>, columns: usize) -> FarBlocks {
     let (f, n) = (far.nrows(), path.nodes.len());
     let mut re = vec![0.0; f * columns * n];
     let mut im = re.clone();
@@ -121,9 +121,9 @@ fn far_blocks(wake: &Wake, path: &Path, far: &Mat<c64>, columns: usize) -> FarBl
             for node in 0..n {
                 let from = (node * columns + column) * f;
                 for i in 0..f {
-                    let entry = far[(i, line * n + node)];
-                    re[from + i] += weight * entry.re;
-                    im[from + i] += weight * entry.im;
+                    let at = 2 * (line * n + node);
+                    re[from + i] += weight * far[(i, at)];
+                    im[from + i] += weight * far[(i, at + 1)];
                 }
             }
         }

@@ -22,8 +22,9 @@ const PARTS: usize = 16;
 pub(crate) struct WakeBlocks {
     /// Lᵀ T W of each slot: functionals × slots.
     pub(crate) near: Mat<f64>,
-    /// One a path: functionals × (streamlines × nodes), weights of the path included.
-    pub(crate) far: Vec<Mat<c64>>,
+    /// One a path: functionals × (streamlines × nodes × 2), real and imaginary part beside
+    /// each other, weights of the path included.
+    pub(crate) far: Vec<Mat<f64>>,
 }
 
 /// Evaluates a wake over a surface.
@@ -125,7 +126,7 @@ impl WakeInfluence<'_> {
         let mut blocks = WakeBlocks {
             near: Mat::zeros(functionals, self.wake.slots.len()),
             far: paths
-                .map(|p| Mat::zeros(functionals, lines * p.nodes.len()))
+                .map(|p| Mat::zeros(functionals, 2 * lines * p.nodes.len()))
                 .to_vec(),
         };
         let mut evaluator = Evaluator::new(self);
@@ -151,9 +152,9 @@ impl WakeInfluence<'_> {
         let slots = self.wake.slots.len();
         let paths = [&self.wake.paths.oscillating, &self.wake.paths.decaying];
         let lines = self.wake.far.anchors.len();
-        let mut tested = Mat::zeros(left.ncols(), n_points);
+        let mut tested = Mat::<f64>::zeros(left.ncols(), n_points);
         let mut near = vec![0.0; n_points * slots];
-        let mut far = paths.map(|p| vec![c64::new(0.0, 0.0); n_points * lines * p.nodes.len()]);
+        let mut far = paths.map(|p| vec![0.0; 2 * n_points * lines * p.nodes.len()]);
         for (i, t) in triangles.enumerate() {
             evaluator.near(t);
             for q in 0..3 {
@@ -166,8 +167,8 @@ impl WakeInfluence<'_> {
                 }
                 near[p * slots..(p + 1) * slots].copy_from_slice(&evaluator.slots[q]);
                 for (path, out) in paths.iter().zip(&mut far) {
-                    let width = lines * path.nodes.len();
-                    evaluator.far_row(t, q, path, &mut out[p * width..(p + 1) * width]);
+                    let width = 2 * lines * path.nodes.len();
+                    evaluator.far_parts(t, q, path, &mut out[p * width..(p + 1) * width]);
                 }
             }
         }
@@ -180,19 +181,15 @@ impl WakeInfluence<'_> {
             1.0,
             Par::Seq,
         );
-        let tested = Mat::from_fn(tested.nrows(), tested.ncols(), |i, j| {
-            c64::new(tested[(i, j)], 0.0)
-        });
         for ((block, values), path) in blocks.far.iter_mut().zip(&far).zip(paths) {
-            let width = lines * path.nodes.len();
+            let width = 2 * lines * path.nodes.len();
             let values = MatRef::from_column_major_slice(values, width, n_points);
-            let one = c64::new(1.0, 0.0);
             matmul(
                 block,
                 Accum::Add,
                 &tested,
                 values.transpose(),
-                one,
+                1.0,
                 Par::Seq,
             );
         }
@@ -358,6 +355,17 @@ impl<'a> Evaluator<'a> {
                 *value += sign * image;
             }
         }
+    }
+
+    /// As [`Self::far_row`], real and imaginary parts beside each other.
+    fn far_parts(&mut self, triangle: usize, q: usize, path: &Path, out: &mut [f64]) {
+        let mut lines = std::mem::take(&mut self.lines);
+        lines.resize(out.len() / 2, c64::new(0.0, 0.0));
+        self.far_row(triangle, q, path, &mut lines);
+        for (pair, value) in out.chunks_exact_mut(2).zip(&lines) {
+            pair.copy_from_slice(&[value.re, value.im]);
+        }
+        self.lines = lines;
     }
 
     /// Influence of every column at s = 0 at one point of the triangle last asked for.
