@@ -35,10 +35,7 @@ fn modes(mesh: &TriMesh) -> Vec<SurfaceMode> {
         ..StructureSettings::default()
     })
     .expect("the case's structure");
-    let body: RigidBody = model
-        .rigid_body
-        .clone()
-        .expect("masses of a free structure");
+    let body: RigidBody = model.rigid_body.expect("masses of a free structure");
     let (elastic, _) = transfer(&model, mesh, &common::scaneagle_components()).expect("modes");
     let mut modes = rigid_modes(&body, &mesh.vertices);
     modes.extend(elastic.into_iter().take(ELASTIC));

@@ -27,6 +27,20 @@ pub enum BemError {
         "exact elastic columns deform the surface, and an antisymmetrically deformed half is no half of a symmetric surface; mesh the whole aircraft or keep structure.shape_change = \"attached\""
     )]
     ShapeChangeOnHalf,
+    /// Sides that do not match, closer than the mesh resolves.
+    #[error(
+        "{percent:.0} % of the surface has an opposite side that does not match closer than {ratio} of the triangles' own size (triangle {triangle}: {distance:.2e} m): the lift would be wrong by half of itself and more; refine the mesh, make the part thicker, or mesh both sides alike"
+    )]
+    TooThin {
+        /// Part of the surface, %.
+        percent: f64,
+        /// Ratio of thickness to the triangle's size.
+        ratio: f64,
+        /// The thinnest triangle.
+        triangle: usize,
+        /// Its distance from the other side, m.
+        distance: f64,
+    },
     /// Triangles longer than half a wave.
     #[error(
         "at |p| = {largest} triangle {triangle}, {length:.4} m long in the stream, sees {phase:.2} rad of the wave that motion leaves, more than half a wave: the forces would be meaningless; refine the mesh or lower the largest k"

@@ -229,8 +229,8 @@ pub(crate) fn guarded(
         Failure::input(
             error.to_string(),
             file.places.of("gaf.k"),
-            "the wave that motion leaves on the surface must be resolved by its triangles",
-            "refine the mesh along the stream, or lower the largest k and |g|",
+            "forces that the mesh does not resolve look like any others",
+            "do what the message says, and look at the mesh with `fladder check --vtu`",
         )
     })
 }
