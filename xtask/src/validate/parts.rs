@@ -37,7 +37,13 @@ const STEADY: Goals = Goals {
     kutta: 0.01,
 };
 
-/// Cells of the fine wings.
+/// Cells of the fine steady wings, of which there are 28.
+const STEADY_WING: Cells = Cells {
+    chord: 32,
+    half_span: 12,
+};
+
+/// Cells of the fine oscillating wings.
 const WING: Cells = Cells {
     chord: 40,
     half_span: 16,
@@ -126,8 +132,8 @@ impl Part {
                 rows.extend(stream::free_roots(16, 0.02)?);
             }
             Self::Wings => {
-                rows.extend(wings::plates(WING, |_| true, STEADY)?);
-                rows.extend(wings::thick(WING, STEADY)?);
+                rows.extend(wings::plates(STEADY_WING, |_| true, STEADY)?);
+                rows.extend(wings::thick(STEADY_WING, STEADY)?);
             }
             Self::Section => {
                 let wing = LongWing {
