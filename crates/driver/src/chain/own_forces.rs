@@ -178,11 +178,12 @@ pub(crate) fn obtain(
     let problem = problem(file, aircraft);
     let key = key(file, &problem);
     if let Some(forces) = cached(cache, key) {
+        console.notes(&guarded(file, &problem, None)?);
         return Ok(forces);
     }
     let plan = fladder_bem::plan(&problem).map_err(|error| unsolved(file, &error))?;
     refuse_too_large(file, &plan)?;
-    console.notes(&guarded(file, &problem, &plan)?);
+    console.notes(&guarded(file, &problem, Some(&plan))?);
     let seconds = plan.core_seconds / rayon::current_num_threads() as f64;
     console.say(format!(
         "computing forces: {} unknowns, {} wake elements, about {} and {:.0} s",
@@ -219,7 +220,7 @@ pub(crate) fn obtain(
 pub(crate) fn guarded(
     file: &CaseFile,
     problem: &Problem<'_>,
-    plan: &Plan,
+    plan: Option<&Plan>,
 ) -> Result<Vec<String>, Failure> {
     let largest = grid(file)
         .iter()
@@ -259,6 +260,12 @@ pub(crate) fn unsolved(file: &CaseFile, error: &BemError) -> Failure {
     let place = file.places.of("mesh.file");
     match error {
         BemError::Interrupted { stage } => Failure::interrupted(stage),
+        BemError::Point { .. } => Failure::input(
+            error.to_string(),
+            "--at",
+            "the pressure has no value there",
+            "give k > 0, or k = 0 with g ≥ 0",
+        ),
         BemError::Singular { .. } | BemError::NotFinite { .. } => Failure::numerical(
             error.to_string(),
             place,

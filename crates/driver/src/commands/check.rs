@@ -148,7 +148,7 @@ fn look_further(
             let mut plan = fladder_bem::plan(&problem)
                 .map_err(|error| own_forces::unsolved(file, &error))?;
             plan.notes
-                .extend(own_forces::guarded(file, &problem, &plan)?);
+                .extend(own_forces::guarded(file, &problem, Some(&plan))?);
             plan
         }
         None => bare_plan(surface)?,
