@@ -218,8 +218,9 @@ impl Aircraft {
         self.case.gaf.k.clone()
     }
 
-    /// The wake's jump goes on through the junction; lift by pressure and by the wake.
-    pub fn junction(&self, solution: &Solution) -> Vec<Row> {
+    /// The wake's jump goes on through the junction, its step there below `goal` of it (one
+    /// cell of the mesh); lift by pressure and by the wake.
+    pub fn junction(&self, solution: &Solution, goal: f64) -> Vec<Row> {
         let steady = &solution.steady;
         let mut rows = Vec::new();
         for jump in &steady.wake_jumps {
@@ -246,7 +247,7 @@ impl Aircraft {
                     // The load is nearly flat at the root, so that the next steps are no
                     // measure.
                     error: ((jumps[1] - jumps[0]) / jumps[1]).abs(),
-                    goal: 0.02,
+                    goal,
                 });
             }
         }

@@ -9,7 +9,7 @@ fn q_of_the_aircraft_is_symmetric_and_smooth_and_its_wake_whole() {
     let aircraft = Aircraft::read(&mesh, 6).expect("the committed mesh and modes");
     let solution = aircraft.solve().expect("a sound aircraft");
     let mut rows = aircraft.symmetry(&solution).expect("Q");
-    rows.extend(aircraft.junction(&solution));
+    rows.extend(aircraft.junction(&solution, 0.04));
     rows.extend(aircraft.smoothness(&solution).expect("Q"));
     assert!(report(&rows));
 }

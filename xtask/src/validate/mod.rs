@@ -70,6 +70,13 @@ impl Validate {
     }
 
     fn refinement(&self) -> Result<bool, ValidateError> {
+        if let Some(folder) = &self.keep {
+            // Before hours of work, not after.
+            std::fs::create_dir_all(folder).map_err(|source| ValidateError::Write {
+                path: folder.clone(),
+                source,
+            })?;
+        }
         let mut figures = Vec::new();
         for file in &self.scaneagle {
             figures.push(self.figures(file)?);

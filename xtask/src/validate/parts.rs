@@ -179,7 +179,7 @@ impl Part {
                 let aircraft = Aircraft::read(&mesh, 20)?;
                 let solution = aircraft.solve()?;
                 rows.extend(aircraft.symmetry(&solution)?);
-                rows.extend(aircraft.junction(&solution));
+                rows.extend(aircraft.junction(&solution, 0.02));
                 rows.extend(aircraft.smoothness(&solution)?);
             }
         }
