@@ -134,23 +134,23 @@ impl Carrier<'_> {
         })
     }
 
+    /// Sectors of a node, once round; in the plane of a half model from rim to rim.
     fn at_node(&self, node: &Node, out: &mut Vec<CarriedCorner>) -> Result<(), BemError> {
         let lines = &self.paths.paths;
         let edge = |p: usize| lines[p].vertices[lines[p].vertices.len() - 2];
-        if let Some(rim) = self.adjacency.rim(node.vertex) {
-            return self.at_plane_node(node, rim, out);
-        }
-        let first = edge(node.paths[0]);
-        if node.paths.iter().all(|&p| edge(p) == first) {
+        let rim = self.adjacency.rim(node.vertex);
+        let first = rim.unwrap_or_else(|| edge(node.paths[0]));
+        if rim.is_none() && node.paths.iter().all(|&p| edge(p) == first) {
             return Ok(());
         }
+        let is_rim = |v: u32| self.adjacency.left_of(node.vertex, v).is_none();
         let mut potential = vec![0.0; lines.len()];
         let mut from = first;
         loop {
             let (sector, next) = self
                 .adjacency
                 .sector(node.vertex, from, Turn::Left, |v| {
-                    node.paths.iter().any(|&p| edge(p) == v)
+                    is_rim(v) || node.paths.iter().any(|&p| edge(p) == v)
                 })
                 .ok_or_else(|| self.fan(node.vertex))?;
             let jump: Vec<(usize, f64)> = potential
@@ -160,7 +160,7 @@ impl Carrier<'_> {
                 .filter(|(_, weight)| *weight != 0.0)
                 .collect();
             self.add(&sector, node.vertex, &jump, out);
-            if next == first {
+            if next == first || is_rim(next) {
                 return Ok(());
             }
             for (place, &p) in node.paths.iter().enumerate() {
@@ -172,43 +172,5 @@ impl Carrier<'_> {
             }
             from = next;
         }
-    }
-
-    /// A node in the plane of a half model, whose triangles reach from rim to rim.
-    fn at_plane_node(
-        &self,
-        node: &Node,
-        rim: u32,
-        out: &mut Vec<CarriedCorner>,
-    ) -> Result<(), BemError> {
-        let lines = &self.paths.paths;
-        let edge = |p: usize| lines[p].vertices[lines[p].vertices.len() - 2];
-        let mut potential = vec![0.0; lines.len()];
-        let mut from = rim;
-        while self.adjacency.left_of(node.vertex, from).is_some() {
-            let (sector, next) = self
-                .adjacency
-                .sector(node.vertex, from, Turn::Left, |v| {
-                    node.paths.iter().any(|&p| edge(p) == v)
-                        || self.adjacency.left_of(node.vertex, v).is_none()
-                })
-                .ok_or_else(|| self.fan(node.vertex))?;
-            let jump: Vec<(usize, f64)> = potential
-                .iter()
-                .copied()
-                .enumerate()
-                .filter(|(_, weight)| *weight != 0.0)
-                .collect();
-            self.add(&sector, node.vertex, &jump, out);
-            for (place, &p) in node.paths.iter().enumerate() {
-                if edge(p) == next {
-                    for &(k, weight) in &node.shares[place] {
-                        potential[k] += sign(&lines[p]) * weight;
-                    }
-                }
-            }
-            from = next;
-        }
-        Ok(())
     }
 }

@@ -13,6 +13,7 @@ use crate::wake::Wake;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par, c64};
 use rayon::prelude::*;
+use std::ops::{AddAssign, Mul};
 
 /// Parts into which the test points are divided; each sums by itself and the parts are
 /// added in order, so that the number of threads does not change a bit.
@@ -41,44 +42,10 @@ impl WakeInfluence<'_> {
         columns: usize,
         progress: &dyn Progress,
     ) -> Result<Mat<f64>, BemError> {
-        let stage = "evaluating the steady wake";
-        let n_triangles = self.galerkin.n_triangles();
-        progress.stage(stage, n_triangles as u64);
         let path = &self.wake.paths.oscillating;
-        let rows: Vec<Vec<f64>> = (0..n_triangles)
-            .into_par_iter()
-            .map_init(
-                || Evaluator::new(self),
-                |evaluator, t| {
-                    if progress.cancelled() {
-                        return Vec::new();
-                    }
-                    let mut out = vec![0.0; 3 * columns];
-                    evaluator.near(t);
-                    for q in 0..3 {
-                        let part = &mut out[q * columns..(q + 1) * columns];
-                        evaluator.steady_row(t, q, path, part);
-                    }
-                    progress.advance(1);
-                    out
-                },
-            )
-            .collect();
-        if progress.cancelled() {
-            return Err(BemError::Interrupted { stage });
-        }
-        let mut tested = Mat::zeros(self.galerkin.n_vertices, columns);
-        for (t, row) in rows.iter().enumerate() {
-            for q in 0..3 {
-                for (corner, &v) in self.galerkin.triangles[t].iter().enumerate() {
-                    let weight = self.galerkin.test_weight(t, q, corner);
-                    for c in 0..columns {
-                        tested[(v as usize, c)] += weight * row[q * columns + c];
-                    }
-                }
-            }
-        }
-        Ok(tested)
+        self.tested_rows(columns, progress, |evaluator, t, q, out| {
+            evaluator.steady_row(t, q, path, out);
+        })
     }
 
     /// Contracts the wake with functionals given on the vertices: `left` has one
@@ -204,11 +171,26 @@ impl WakeInfluence<'_> {
         columns: usize,
         progress: &dyn Progress,
     ) -> Result<Mat<c64>, BemError> {
+        let path = self.wake.paths.of(s);
+        self.tested_rows(columns, progress, |evaluator, t, q, out| {
+            evaluator.row(t, q, s, path, out);
+        })
+    }
+
+    /// Test functions × columns of rows that `fill` gives at each of a triangle's points.
+    fn tested_rows<T>(
+        &self,
+        columns: usize,
+        progress: &dyn Progress,
+        fill: impl Fn(&mut Evaluator<'_>, usize, usize, &mut [T]) + Sync,
+    ) -> Result<Mat<T>, BemError>
+    where
+        T: Copy + Default + Send + AddAssign + Mul<f64, Output = T>,
+    {
         let stage = "evaluating the wake";
         let n_triangles = self.galerkin.n_triangles();
         progress.stage(stage, n_triangles as u64);
-        let path = self.wake.paths.of(s);
-        let rows: Vec<Vec<c64>> = (0..n_triangles)
+        let rows: Vec<Vec<T>> = (0..n_triangles)
             .into_par_iter()
             .map_init(
                 || Evaluator::new(self),
@@ -216,10 +198,10 @@ impl WakeInfluence<'_> {
                     if progress.cancelled() {
                         return Vec::new();
                     }
-                    let mut out = vec![c64::new(0.0, 0.0); 3 * columns];
+                    let mut out = vec![T::default(); 3 * columns];
                     evaluator.near(t);
                     for (q, part) in out.chunks_exact_mut(columns).enumerate() {
-                        evaluator.row(t, q, s, path, part);
+                        fill(evaluator, t, q, part);
                     }
                     progress.advance(1);
                     out
@@ -229,13 +211,13 @@ impl WakeInfluence<'_> {
         if progress.cancelled() {
             return Err(BemError::Interrupted { stage });
         }
-        let mut tested = Mat::zeros(self.galerkin.n_vertices, columns);
+        let mut tested = Mat::from_fn(self.galerkin.n_vertices, columns, |_, _| T::default());
         for (t, row) in rows.iter().enumerate() {
             for (q, values) in row.chunks_exact(columns).enumerate() {
                 for (corner, &v) in self.galerkin.triangles[t].iter().enumerate() {
                     let weight = self.galerkin.test_weight(t, q, corner);
-                    for (c, value) in values.iter().enumerate() {
-                        tested[(v as usize, c)] += weight * value;
+                    for (c, &value) in values.iter().enumerate() {
+                        tested[(v as usize, c)] += value * weight;
                     }
                 }
             }
