@@ -29,6 +29,7 @@
 //! Nothing here knows about files, clocks or terminals.
 
 mod adjacency;
+mod blocked_lu;
 mod blocks;
 mod body_node;
 mod body_path;
@@ -41,12 +42,16 @@ mod dense;
 #[cfg(test)]
 mod direct;
 mod error;
+mod far_tiles;
 mod far_wake;
 mod galerkin;
 mod guards;
 mod image;
+mod lanes;
 mod near_field;
 mod onset;
+mod ordering;
+mod panel_block;
 pub mod panels;
 mod prepare;
 mod pressure;
@@ -59,6 +64,7 @@ mod stations;
 mod steady;
 mod strike;
 mod surface_flow;
+mod tiles;
 mod transfer;
 mod trefftz;
 mod wake;
@@ -67,6 +73,7 @@ mod wake_influence;
 mod wake_jumps;
 mod wake_sheet;
 
+pub use dense::Factors;
 pub use error::{BemError, LaplaceError};
 pub use fladder_mesh::Symmetry;
 pub use guards::guards;

@@ -2,7 +2,7 @@
 
 use crate::boundary::{ModeFields, onset_sources};
 use crate::cut::CutSurface;
-use crate::dense::{BodyOperator, DenseOperator};
+use crate::dense::{BodyOperator, DenseOperator, Factors};
 use crate::error::BemError;
 use crate::galerkin::Galerkin;
 use crate::image::Image;
@@ -63,18 +63,21 @@ impl Prepared<DenseOperator> {
         let mut flow_wake = None;
         let (body, onsets) = if flow == motion {
             let all = concatenate(&[&sources, &onset_sources(&galerkin)]);
-            let body = Body::factorise(galerkin, &all, progress)?;
+            let body = Body::factorise(galerkin, &all, problem.factors, progress)?;
             let onsets = body.steady_onsets(&wake, &selector, sources.ncols(), progress)?;
             (body, onsets)
         } else {
             let even = Galerkin::new(&surface, flow);
             let onset = onset_sources(&even);
-            let steady = Body::factorise(even, &onset, progress)?;
             let (_, even_wake) = lay_out(problem, flow)?;
+            let steady = Body::factorise(even, &onset, problem.factors, progress)?;
             let onsets = steady.steady_onsets(&even_wake, &selector, 0, progress)?;
             flow_wake = Some(even_wake);
             drop(steady);
-            (Body::factorise(galerkin, &sources, progress)?, onsets)
+            (
+                Body::factorise(galerkin, &sources, problem.factors, progress)?,
+                onsets,
+            )
         };
         let mut prepared = Self {
             surface,
@@ -135,16 +138,12 @@ impl Body<DenseOperator> {
     fn factorise(
         galerkin: Galerkin,
         sources: &Mat<f64>,
+        factors: Factors,
         progress: &dyn Progress,
     ) -> Result<Self, BemError> {
         let assembly = galerkin.assemble(sources.as_ref(), progress)?;
-        let stage = "factorising";
-        progress.stage(stage, 1);
-        let operator = DenseOperator::new(assembly.rows, galerkin.n_vertices)?;
-        progress.advance(1);
-        if progress.cancelled() {
-            return Err(BemError::Interrupted { stage });
-        }
+        let operator =
+            DenseOperator::new(assembly.rows, galerkin.n_vertices, factors, progress)?;
         let mut potentials = assembly.right_hand_sides;
         operator.solve(&mut potentials);
         Ok(Self {

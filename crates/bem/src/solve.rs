@@ -1,7 +1,7 @@
 //! From a surface and its modes to the transfer model.
 
 use crate::cut::CutSurface;
-use crate::dense::BodyOperator;
+use crate::dense::{BodyOperator, Factors};
 use crate::error::BemError;
 use crate::image::Image;
 use crate::onset::OnsetBasis;
@@ -76,6 +76,8 @@ pub struct Problem<'a> {
     pub semichord: f64,
     /// Point about which steady moments are taken, m.
     pub moment_point: Vec3,
+    /// Precision of the factors; results are those of double precision in both.
+    pub factors: Factors,
 }
 
 impl<'a> Problem<'a> {
@@ -99,6 +101,7 @@ impl<'a> Problem<'a> {
             body_lines: &[],
             semichord,
             moment_point: Vec3::zeros(),
+            factors: Factors::default(),
         }
     }
 }
@@ -235,7 +238,7 @@ fn sizes(surface: &CutSurface, wake: &Wake) -> Sizes {
         unknowns: surface.vertices.len(),
         triangles: surface.triangles.len(),
         wake_columns: surface.columns.len(),
-        wake_elements: wake.near.panels.len(),
+        wake_elements: wake.near.len(),
         wake_rows: wake.stations,
         wake_streamlines: wake.far.anchors.len(),
     }
