@@ -9,10 +9,13 @@
 
 use crate::error::BemError;
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::linalg::lu::partial_pivoting::factor;
 use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
-use faer::perm::PermRef;
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place,
+    solve_unit_upper_triangular_in_place, solve_upper_triangular_in_place,
+};
+use faer::prelude::ReborrowMut;
 use faer::traits::RealField;
 use faer::{Accum, MatMut, MatRef, Par, Spec};
 use rayon::prelude::*;
@@ -21,6 +24,10 @@ use rayon::prelude::*;
 const BLOCK: usize = 256;
 /// Widest chunk behind it.
 const CHUNK: usize = 512;
+/// Rows of a product in a substitution.
+const ROWS: usize = 1024;
+/// Right-hand sides of a diagonal block that one thread solves.
+const SOLVED_TOGETHER: usize = 32;
 
 /// Factors and row permutation.
 #[derive(Debug)]
@@ -50,8 +57,8 @@ impl<T: RealField + Copy> BlockedLu<T> {
         advance: &(dyn Fn(usize) + Sync),
     ) -> Self {
         let n = size;
-        let mut forward: Vec<usize> = (0..n).collect();
         let mut swaps = Swaps::default();
+        let mut all_swaps = Vec::new();
         if n > 0 {
             swaps = factorise(panel(&mut columns, n, 0, BLOCK.min(n)), 0);
         }
@@ -59,18 +66,9 @@ impl<T: RealField + Copy> BlockedLu<T> {
             let width = BLOCK.min(n - first);
             let next = first + width;
             let (done, behind) = columns.split_at_mut(next * n);
-            let (before, block) = done.split_at_mut(first * n);
-            before
-                .par_chunks_mut(n)
-                .for_each(|column| swaps.apply(column));
-            let mut moved = vec![0; swaps.to.len()];
-            for (value, &from) in moved.iter_mut().zip(&swaps.from) {
-                *value = forward[from];
-            }
-            for (&to, value) in swaps.to.iter().zip(moved) {
-                forward[to] = value;
-            }
+            let block = &done[first * n..];
             if next == n {
+                all_swaps.push(swaps);
                 break;
             }
             let block = MatRef::from_column_major_slice(block, n, width);
@@ -93,9 +91,10 @@ impl<T: RealField + Copy> BlockedLu<T> {
                         .for_each(|chunk| update(block, first, &swaps, chunk));
                 },
             );
-            swaps = found;
+            all_swaps.push(std::mem::replace(&mut swaps, found));
             advance(width);
         }
+        let forward = finish_swaps(&mut columns, n, &all_swaps);
         let mut inverse = vec![0; n];
         for (i, &from) in forward.iter().enumerate() {
             inverse[from] = i;
@@ -132,20 +131,123 @@ impl<T: RealField + Copy> BlockedLu<T> {
         Ok(())
     }
 
-    /// Overwrites B with A⁻¹ B, or A⁻ᵀ B; by one thread.
-    pub(crate) fn solve(&self, block: MatMut<'_, T>, transposed: bool) {
+    /// Overwrites B with A⁻¹ B, or A⁻ᵀ B.
+    ///
+    /// Substitution by blocks, all right-hand sides together: what a solved block of rows
+    /// takes from the others is a product, in chunks of rows.
+    pub(crate) fn solve(&self, mut b: MatMut<'_, T>, transposed: bool) {
         let n = self.size;
         let lu = MatRef::from_column_major_slice(&self.factors, n, n);
-        let permutation = PermRef::new_checked(&self.forward, &self.inverse, n);
-        let request = solve::solve_in_place_scratch::<usize, T>(n, block.ncols(), Par::Seq);
-        let mut memory = MemBuffer::new(request);
-        let stack = MemStack::new(&mut memory);
         if transposed {
-            solve::solve_transpose_in_place(lu, lu, permutation, block, Par::Seq, stack);
+            substitute(lu.transpose(), b.rb_mut(), Triangle::Lower);
+            substitute(lu.transpose(), b.rb_mut(), Triangle::UnitUpper);
+            permute(b, &self.inverse);
         } else {
-            solve::solve_in_place(lu, lu, permutation, block, Par::Seq, stack);
+            permute(b.rb_mut(), &self.forward);
+            substitute(lu, b.rb_mut(), Triangle::UnitLower);
+            substitute(lu, b, Triangle::Upper);
         }
     }
+}
+
+/// Part of a matrix that a substitution takes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Triangle {
+    Lower,
+    UnitLower,
+    Upper,
+    UnitUpper,
+}
+
+/// Overwrites B with T⁻¹ B.
+fn substitute<T: RealField + Copy>(
+    matrix: MatRef<'_, T>,
+    mut b: MatMut<'_, T>,
+    triangle: Triangle,
+) {
+    let n = matrix.nrows();
+    let is_lower = matches!(triangle, Triangle::Lower | Triangle::UnitLower);
+    let mut blocks: Vec<usize> = (0..n).step_by(BLOCK).collect();
+    if !is_lower {
+        blocks.reverse();
+    }
+    for first in blocks {
+        let width = BLOCK.min(n - first);
+        let (before, rest) = b.rb_mut().split_at_row_mut(first);
+        let (mut own, behind) = rest.split_at_row_mut(width);
+        let diagonal = matrix.submatrix(first, first, width, width);
+        own.rb_mut()
+            .par_col_chunks_mut(SOLVED_TOGETHER)
+            .for_each(|part| match triangle {
+                Triangle::Lower => {
+                    solve_lower_triangular_in_place(diagonal, part, Par::Seq);
+                }
+                Triangle::UnitLower => {
+                    solve_unit_lower_triangular_in_place(diagonal, part, Par::Seq);
+                }
+                Triangle::Upper => {
+                    solve_upper_triangular_in_place(diagonal, part, Par::Seq);
+                }
+                Triangle::UnitUpper => {
+                    solve_unit_upper_triangular_in_place(diagonal, part, Par::Seq);
+                }
+            });
+        let (others, from) = if is_lower {
+            (behind, first + width)
+        } else {
+            (before, 0)
+        };
+        let own = own.as_ref();
+        others
+            .par_row_chunks_mut(ROWS)
+            .enumerate()
+            .for_each(|(chunk, mut part)| {
+                let block = matrix.submatrix(from + chunk * ROWS, first, part.nrows(), width);
+                matmul(&mut part, Accum::Add, block, own, -T::one_impl(), Par::Seq);
+            });
+    }
+}
+
+/// Row i becomes what was row `from[i]`.
+fn permute<T: RealField + Copy>(b: MatMut<'_, T>, from: &[usize]) {
+    b.par_col_chunks_mut(1).for_each(|mut column| {
+        let values: Vec<T> = from.iter().map(|&i| column[(i, 0)]).collect();
+        for (i, value) in values.into_iter().enumerate() {
+            column[(i, 0)] = value;
+        }
+    });
+}
+
+/// Moves the rows of each block of columns as the blocks after it ask, in one go; gives the
+/// row that each row of the factors was.
+fn finish_swaps<T: Copy + Send + Sync>(
+    columns: &mut [T],
+    n: usize,
+    swaps: &[Swaps],
+) -> Vec<usize> {
+    let mut source: Vec<usize> = (0..n).collect();
+    let mut earlier: Vec<usize> = (0..n).collect();
+    for (b, swaps) in swaps.iter().enumerate().rev() {
+        let (first, end) = (b * BLOCK * n, ((b + 1) * BLOCK).min(n) * n);
+        columns[first..end].par_chunks_mut(n).for_each_init(
+            || Vec::with_capacity(n),
+            |moved, column| {
+                moved.clear();
+                moved.extend(source.iter().map(|&i| column[i]));
+                column.copy_from_slice(moved);
+            },
+        );
+        for (&to, &from) in swaps.to.iter().zip(&swaps.from) {
+            earlier[to] = from;
+        }
+        for row in &mut source {
+            *row = earlier[*row];
+        }
+        for &to in &swaps.to {
+            earlier[to] = to;
+        }
+    }
+    source
 }
 
 /// Rows from `first` on of `width` columns from `first` on.

@@ -15,15 +15,11 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
-/// Right-hand sides solved together by one thread; fixed, so that results do not depend
-/// on the number of threads.
-const SOLVE_BLOCK: usize = 64;
-
 /// Rows of a product that one thread makes.
 const PRODUCT_ROWS: usize = 256;
 
 /// Refinements of a solution from single-precision factors.
-const REFINEMENTS: usize = 2;
+const REFINEMENTS: u64 = 2;
 
 /// Pivots this far below the largest leave no digit, in double and in single precision.
 const SMALLEST_PIVOT: f64 = 1e-13;
@@ -32,9 +28,9 @@ const SMALLEST_SINGLE_PIVOT: f64 = 1e-6;
 /// What the reduced model needs of the body operator A.
 pub(crate) trait BodyOperator: Sync {
     /// Overwrites B with A⁻¹ B.
-    fn solve(&self, b: &mut Mat<f64>);
+    fn solve(&self, b: &mut Mat<f64>, progress: &dyn Progress);
     /// Overwrites B with A⁻ᵀ B.
-    fn solve_transpose(&self, b: &mut Mat<f64>);
+    fn solve_transpose(&self, b: &mut Mat<f64>, progress: &dyn Progress);
 }
 
 /// Numbers in which the factors are kept.
@@ -96,13 +92,14 @@ impl DenseOperator {
         Ok(operator)
     }
 
-    fn solve_either(&self, b: &mut Mat<f64>, transposed: bool) {
+    fn solve_either(&self, b: &mut Mat<f64>, transposed: bool, progress: &dyn Progress) {
         match self {
             Self::Double(factors) => {
-                b.par_col_chunks_mut(SOLVE_BLOCK)
-                    .for_each(|block| factors.solve(block, !transposed));
+                progress.stage("solving", 1);
+                factors.solve(b.as_mut(), !transposed);
             }
             Self::Refined { rows, factors } => {
+                progress.stage("solving", REFINEMENTS + 1);
                 let right = b.clone();
                 let n = right.nrows();
                 let matrix = MatRef::from_row_major_slice(rows, n, n);
@@ -114,15 +111,12 @@ impl DenseOperator {
                 let mut residual = right.clone();
                 b.as_mut().fill(0.0);
                 for step in 0..=REFINEMENTS {
-                    b.par_col_chunks_mut(SOLVE_BLOCK)
-                        .zip(residual.par_col_chunks(SOLVE_BLOCK))
-                        .for_each(|(x, residual)| {
-                            correct(factors, x, residual, !transposed);
-                        });
+                    correct(factors, b.as_mut(), residual.as_ref(), !transposed);
                     if step < REFINEMENTS {
                         residual.copy_from(&right);
                         subtract_product(matrix, b.as_ref(), residual.as_mut());
                     }
+                    progress.advance(1);
                 }
             }
         }
@@ -132,23 +126,34 @@ impl DenseOperator {
 /// x += the solution of single precision for the residual.
 fn correct(
     factors: &BlockedLu<f32>,
-    mut x: MatMut<'_, f64>,
+    x: MatMut<'_, f64>,
     residual: MatRef<'_, f64>,
     transposed: bool,
 ) {
     let (n, columns) = (x.nrows(), x.ncols());
     // Scaled to one, so that small columns keep their digits.
     let scale: Vec<f64> = (0..columns)
+        .into_par_iter()
         .map(|j| residual.col(j).norm_max())
         .map(|size| if size > 0.0 { size } else { 1.0 })
         .collect();
-    let mut single = Mat::from_fn(n, columns, |i, j| (residual[(i, j)] / scale[j]) as f32);
+    let mut single = Mat::<f32>::zeros(n, columns);
+    single
+        .par_col_chunks_mut(1)
+        .enumerate()
+        .for_each(|(j, mut column)| {
+            for i in 0..n {
+                column[(i, 0)] = (residual[(i, j)] / scale[j]) as f32;
+            }
+        });
     factors.solve(single.as_mut(), transposed);
-    for j in 0..columns {
-        for i in 0..n {
-            x[(i, j)] += scale[j] * f64::from(single[(i, j)]);
-        }
-    }
+    x.par_col_chunks_mut(1)
+        .enumerate()
+        .for_each(|(j, mut column)| {
+            for i in 0..n {
+                column[(i, 0)] += scale[j] * f64::from(single[(i, j)]);
+            }
+        });
 }
 
 /// R −= A X, each thread some rows.
@@ -162,12 +167,12 @@ fn subtract_product(a: MatRef<'_, f64>, x: MatRef<'_, f64>, r: MatMut<'_, f64>) 
 }
 
 impl BodyOperator for DenseOperator {
-    fn solve(&self, b: &mut Mat<f64>) {
-        self.solve_either(b, false);
+    fn solve(&self, b: &mut Mat<f64>, progress: &dyn Progress) {
+        self.solve_either(b, false, progress);
     }
 
-    fn solve_transpose(&self, b: &mut Mat<f64>) {
-        self.solve_either(b, true);
+    fn solve_transpose(&self, b: &mut Mat<f64>, progress: &dyn Progress) {
+        self.solve_either(b, true, progress);
     }
 }
 
@@ -196,9 +201,9 @@ mod tests {
                 let x = Mat::from_fn(n, 80, |i, j| ((i + 3 * j) % 7) as f64);
                 for (mut b, transposed) in [(&a * &x, false), (a.transpose() * &x, true)] {
                     if transposed {
-                        operator.solve_transpose(&mut b);
+                        operator.solve_transpose(&mut b, &Silent);
                     } else {
-                        operator.solve(&mut b);
+                        operator.solve(&mut b, &Silent);
                     }
                     let error = (&b - &x).norm_max();
                     println!("{n} unknowns, {factors:?}, transposed {transposed}: {error:.1e}");

@@ -8,7 +8,7 @@
 
 use crate::far_wake::{FarWake, INVERSE_FOUR_PI};
 use crate::lanes::{Lanes, WIDTH};
-use crate::panel_block::Points;
+use crate::panel_block::{Points, dot, points_of, splat3};
 use crate::tiles::{TestCluster, test};
 use faer::c64;
 use fladder_mesh::Vec3;
@@ -106,14 +106,36 @@ impl Default for FarScratch {
 
 impl FarScratch {
     /// Tested influence densities of a block at the nodes ξ: rows of the cluster ×
-    /// [`FarBlock::columns`], by columns; without weights and without e^{−sξ}.
+    /// [`FarBlock::columns`], by rows; without weights and without e^{−sξ}.
     pub(crate) fn tile(
         &mut self,
         cluster: &TestCluster,
         block: &FarBlock,
         nodes: &[c64],
     ) -> &[f64] {
-        let (rows, columns) = (cluster.rows.len(), block.columns(nodes.len()));
+        self.fill(cluster, block, nodes, None)
+    }
+
+    /// The same summed over the nodes with a factor each: rows × (streamlines × 2).
+    pub(crate) fn summed_tile(
+        &mut self,
+        cluster: &TestCluster,
+        block: &FarBlock,
+        nodes: &[c64],
+        factors: &[c64],
+    ) -> &[f64] {
+        self.fill(cluster, block, nodes, Some(factors))
+    }
+
+    fn fill(
+        &mut self,
+        cluster: &TestCluster,
+        block: &FarBlock,
+        nodes: &[c64],
+        factors: Option<&[c64]>,
+    ) -> &[f64] {
+        let places = if factors.is_some() { 1 } else { nodes.len() };
+        let (rows, columns) = (cluster.rows.len(), block.columns(places));
         self.tile.clear();
         self.tile.resize(rows * columns, 0.0);
         self.inverse
@@ -131,6 +153,7 @@ impl FarScratch {
                     self.arch.dispatch(Densities {
                         block,
                         nodes,
+                        factors,
                         points: &seen.points[q],
                         inverse: &mut self.inverse,
                         out,
@@ -142,17 +165,18 @@ impl FarScratch {
                     }
                 }
             }
-            self.arch
-                .dispatch(|| test(group, rows, &self.values, &mut self.tile));
+            test(self.arch, group, &self.values, &mut self.tile);
         }
         &self.tile
     }
 }
 
-/// Adds the densities of unit jumps on the streamlines, columns × [`WIDTH`], to `out`.
+/// Adds the densities of unit jumps on the streamlines, columns × [`WIDTH`], to `out`; with
+/// factors, their sums over the nodes.
 struct Densities<'a> {
     block: &'a FarBlock,
     nodes: &'a [c64],
+    factors: Option<&'a [c64]>,
     points: &'a Points,
     inverse: &'a mut [[f64; 2 * WIDTH]],
     out: &'a mut [f64],
@@ -235,6 +259,7 @@ impl WithSimd for Densities<'_> {
         let Self {
             block,
             nodes,
+            factors,
             points,
             inverse,
             out,
@@ -245,24 +270,17 @@ impl WithSimd for Densities<'_> {
         let n = nodes.len();
         let (out, _) = S::as_mut_simd_f64s(out);
         for chunk in 0..chunks {
-            let point: [Lanes<S>; 3] = [0, 1, 2].map(|a: usize| {
-                let (vectors, _) = S::as_simd_f64s(&points[a]);
-                lanes(vectors[chunk])
-            });
-            let from = |anchor: &Vec3| [0, 1, 2].map(|a: usize| point[a] - c(anchor[a]));
-            let dot = |a: [Lanes<S>; 3], b: &Vec3| {
-                a[0].mul_add(c(b.x), a[1].mul_add(c(b.y), a[2] * c(b.z)))
-            };
+            let point = points_of(simd, points, chunk);
             for (line, anchor) in block.anchors.iter().enumerate() {
-                let d = from(anchor);
-                let along = dot(d, &block.direction);
-                let across = [0, 1, 2].map(|a: usize| d[a] - along * c(block.direction[a]));
-                let across = across[0]
-                    .mul_add(
-                        across[0],
-                        across[1].mul_add(across[1], across[2] * across[2]),
-                    )
-                    .sqrt();
+                let d = offset(simd, point, anchor);
+                let stream = splat3(simd, &block.direction);
+                let along = dot(d, stream);
+                let across = [
+                    d[0] - along * stream[0],
+                    d[1] - along * stream[1],
+                    d[2] - along * stream[2],
+                ];
+                let across = dot(across, across).sqrt();
                 for (xi, out) in nodes.iter().zip(&mut inverse[line * n..]) {
                     let value = inverse_distance(simd, *xi, along, across);
                     let (out, _) = S::as_mut_simd_f64s(out);
@@ -272,22 +290,18 @@ impl WithSimd for Densities<'_> {
             }
             for strip in &block.strips {
                 let [a, b] = strip.ends;
-                let d = from(&block.anchors[a]);
-                let height = dot(d, &strip.normal);
-                let along = dot(d, &block.direction);
-                let distance = d[0].mul_add(d[0], d[1].mul_add(d[1], d[2] * d[2]));
+                let d = offset(simd, point, &block.anchors[a]);
+                let height = dot(d, splat3(simd, &strip.normal));
+                let along = dot(d, splat3(simd, &block.direction));
+                let distance = dot(d, d);
                 let over_span = c(1.0 / strip.span_squared);
-                let projection = dot(d, &strip.span) * over_span;
+                let projection = dot(d, splat3(simd, &strip.span)) * over_span;
+                let skew = strip.skew / strip.span_squared;
                 for (node, xi) in nodes.iter().enumerate() {
-                    let load = |line: usize| {
-                        let (v, _) = S::as_simd_f64s(&inverse[line * n + node]);
-                        Complex {
-                            re: lanes(v[0]),
-                            im: lanes(v[chunks]),
-                        }
-                    };
-                    let ends = [load(a), load(b)];
-                    let skew = strip.skew / strip.span_squared;
+                    let ends = [
+                        kept(simd, &inverse[a * n + node]),
+                        kept(simd, &inverse[b * n + node]),
+                    ];
                     let foot = Complex {
                         re: projection - c(xi.re * skew),
                         im: c(-xi.im * skew),
@@ -299,17 +313,50 @@ impl WithSimd for Densities<'_> {
                         foot,
                         ends,
                     );
+                    // In the plane of the strip the density is zero, r and a too.
+                    let away = height.abs();
                     for (line, value) in [(a, first), (b, second)] {
-                        let at = 2 * (line * n + node) * chunks + chunk;
-                        for (at, part) in [(at, value.re), (at + chunks, value.im)] {
-                            // In the plane of the strip the density is zero, r and a too.
-                            let part = c(0.0).where_less(height.abs(), part * height, c(0.0));
-                            out[at] = (lanes(out[at]) + part).values();
+                        let mut part = Complex {
+                            re: c(0.0).where_less(away, value.re * height, c(0.0)),
+                            im: c(0.0).where_less(away, value.im * height, c(0.0)),
+                        };
+                        let mut place = line * n + node;
+                        if let Some(factors) = factors {
+                            let factor = factors[node];
+                            part = part.times(Complex {
+                                re: c(factor.re),
+                                im: c(factor.im),
+                            });
+                            place = line;
                         }
+                        let at = 2 * place * chunks + chunk;
+                        out[at] = (lanes(out[at]) + part.re).values();
+                        out[at + chunks] = (lanes(out[at + chunks]) + part.im).values();
                     }
                 }
             }
         }
+    }
+}
+
+/// P − A.
+#[inline(always)]
+fn offset<S: Simd>(simd: S, point: [Lanes<S>; 3], anchor: &Vec3) -> [Lanes<S>; 3] {
+    let anchor = splat3(simd, anchor);
+    [
+        point[0] - anchor[0],
+        point[1] - anchor[1],
+        point[2] - anchor[2],
+    ]
+}
+
+/// A number as it was kept.
+#[inline(always)]
+fn kept<S: Simd>(simd: S, values: &[f64; 2 * WIDTH]) -> Complex<S> {
+    let (v, _) = S::as_simd_f64s(values);
+    Complex {
+        re: Lanes::new(simd, v[0]),
+        im: Lanes::new(simd, v[WIDTH / S::F64_LANES]),
     }
 }
 
@@ -392,6 +439,7 @@ mod tests {
                     Arch::new().dispatch(Densities {
                         block: &block,
                         nodes: &path.nodes,
+                        factors: None,
                         points: &points,
                         inverse: &mut inverse,
                         out: &mut out,

@@ -168,21 +168,27 @@ impl Galerkin {
         let sources = self.in_order_of_blocks(sources);
         let stage = "assembling body influences";
         progress.stage(stage, self.n_triangles() as u64);
+        let mut memory = Vec::new();
+        memory.resize_with(CLUSTERS_AT_ONCE, || ClusterRows {
+            rows: Vec::new(),
+            sources: Mat::new(),
+            free_terms: Vec::new(),
+        });
         for batch in self.clusters.chunks(CLUSTERS_AT_ONCE) {
             if progress.cancelled() {
                 return Err(BemError::Interrupted { stage });
             }
-            let evaluated: Vec<ClusterRows> = batch
+            let evaluated = &mut memory[..batch.len()];
+            batch
                 .par_iter()
-                .map(|cluster| {
-                    let result = self.evaluate(cluster, sources.as_ref());
+                .zip(evaluated.par_iter_mut())
+                .for_each(|(cluster, result)| {
+                    self.evaluate(cluster, sources.as_ref(), result);
                     let triangles = cluster.groups.iter().map(|g| g.triangles.len());
                     progress.advance(triangles.sum::<usize>() as u64);
-                    result
-                })
-                .collect();
-            self.accumulate(batch, &evaluated, &mut rows, &mut right_hand_sides);
-            for (cluster, result) in batch.iter().zip(&evaluated) {
+                });
+            self.accumulate(batch, evaluated, &mut rows, &mut right_hand_sides);
+            for (cluster, result) in batch.iter().zip(&*evaluated) {
                 for (group, free) in cluster.groups.iter().zip(&result.free_terms) {
                     for (lane, &t) in group.triangles.iter().enumerate() {
                         for (q, values) in free.iter().enumerate() {
@@ -216,25 +222,33 @@ impl Galerkin {
     }
 
     /// c N − D and −S σ tested over one cluster.
-    fn evaluate(&self, cluster: &TestCluster, sources: MatRef<'_, f64>) -> ClusterRows {
+    fn evaluate(
+        &self,
+        cluster: &TestCluster,
+        sources: MatRef<'_, f64>,
+        result: &mut ClusterRows,
+    ) {
         let (n, height) = (self.n_vertices, cluster.rows.len());
-        let mut rows = vec![0.0; height * n];
+        let rows = &mut result.rows;
+        rows.clear();
+        rows.resize(height * n, 0.0);
         let mut product = Mat::zeros(height, sources.ncols());
         let mut sums = vec![[[0.0; WIDTH]; 3]; cluster.groups.len()];
         let (mut scratch, mut tile) = (TileScratch::default(), Tile::default());
         let mut corner = 0;
         for block in &self.blocks {
             scratch.fill(self, cluster, block, true, &mut tile, &mut sums);
-            for (r, row) in rows.chunks_exact_mut(n).enumerate() {
-                for (c, &v) in block.columns.iter().enumerate() {
-                    row[v as usize] -= tile.doublets[c * height + r];
+            let tested = tile.doublets.chunks_exact(block.places());
+            for (row, tested) in rows.chunks_exact_mut(n).zip(tested) {
+                for (&v, value) in block.columns.iter().zip(tested) {
+                    row[v as usize] -= value;
                 }
             }
             let corners = 3 * block.triangles.len();
             matmul(
                 &mut product,
                 Accum::Add,
-                MatRef::from_column_major_slice(&tile.sources, height, corners),
+                MatRef::from_row_major_slice(&tile.sources, height, corners),
                 sources.subrows(corner, corners),
                 -1.0,
                 Par::Seq,
@@ -255,11 +269,8 @@ impl Galerkin {
                 }
             }
         }
-        ClusterRows {
-            rows,
-            sources: product,
-            free_terms: free,
-        }
+        result.sources = product;
+        result.free_terms = free;
     }
 
     /// Adds the rows of a batch; one thread a matrix row, clusters in their order.

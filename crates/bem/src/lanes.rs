@@ -156,10 +156,11 @@ impl<S: Simd> Lanes<S> {
 
     #[inline(always)]
     fn polynomial(self, coefficients: &[f64]) -> Self {
-        let (last, rest) = coefficients.split_last().expect("a constant series");
-        rest.iter().rev().fold(self.constant(*last), |sum, &c| {
-            sum.mul_add(self, self.constant(c))
-        })
+        let mut sum = self.constant(0.0);
+        for c in coefficients.iter().rev() {
+            sum = sum.mul_add(self, self.constant(*c));
+        }
+        sum
     }
 
     /// atanh t for |t| ≤ [`SERIES_LIMIT`].

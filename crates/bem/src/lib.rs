@@ -53,6 +53,8 @@ mod onset;
 mod ordering;
 mod panel_block;
 pub mod panels;
+#[doc(hidden)]
+pub mod pieces;
 mod prepare;
 mod pressure;
 mod progress;

@@ -227,12 +227,12 @@ fn seen<S: Simd>(simd: S, vertex: &Vec3, point: [Lanes<S>; 3]) -> Seen<S> {
 }
 
 #[inline(always)]
-fn dot<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> Lanes<S> {
+pub(crate) fn dot<S: Simd>(a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> Lanes<S> {
     a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
 }
 
 #[inline(always)]
-fn splat3<S: Simd>(simd: S, v: &Vec3) -> [Lanes<S>; 3] {
+pub(crate) fn splat3<S: Simd>(simd: S, v: &Vec3) -> [Lanes<S>; 3] {
     [
         Lanes::splat(simd, v.x),
         Lanes::splat(simd, v.y),
@@ -245,16 +245,59 @@ fn splat3<S: Simd>(simd: S, v: &Vec3) -> [Lanes<S>; 3] {
 fn logarithm<S: Simd, const FAR: bool>(
     simd: S,
     edge: &SharedEdge,
-    a: Lanes<S>,
-    b: Lanes<S>,
+    ends: &[Seen<S>; 2],
 ) -> Lanes<S> {
     let c = |value| Lanes::splat(simd, value);
-    let (sum, length) = (a + b, c(edge.length));
+    let (sum, length) = (ends[0].distance + ends[1].distance, c(edge.length));
     if FAR {
         c(2.0 * INVERSE_FOUR_PI) * (length / sum).small_atanh()
     } else {
         let gap = (sum - length).max(c(EDGE_FLOOR * edge.length));
         c(INVERSE_FOUR_PI) * (sum + length).ln_ratio(gap)
+    }
+}
+
+/// L/4π of two edges of a far block, by one division.
+#[inline(always)]
+fn far_logarithms<S: Simd>(
+    simd: S,
+    edges: [&SharedEdge; 2],
+    ends: [&[Seen<S>; 2]; 2],
+) -> [Lanes<S>; 2] {
+    let c = |value| Lanes::splat(simd, value);
+    let first = ends[0][0].distance + ends[0][1].distance;
+    let second = ends[1][0].distance + ends[1][1].distance;
+    let inverse = c(1.0) / (first * second);
+    let scale = c(2.0 * INVERSE_FOUR_PI);
+    [
+        scale * (c(edges[0].length) * (second * inverse)).small_atanh(),
+        scale * (c(edges[1].length) * (first * inverse)).small_atanh(),
+    ]
+}
+
+/// Both ends of an edge as they were kept.
+#[inline(always)]
+fn ends_of<S: Simd>(simd: S, edge: &SharedEdge, vertices: &[[f64; 4 * WIDTH]]) -> [Seen<S>; 2] {
+    [
+        kept(simd, &vertices[edge.ends[0] as usize]),
+        kept(simd, &vertices[edge.ends[1] as usize]),
+    ]
+}
+
+/// Keeps logarithm and, with sources, source term of an edge.
+#[inline(always)]
+fn keep_edge<S: Simd, const SOURCES: bool>(
+    simd: S,
+    edge: &SharedEdge,
+    ends: &[Seen<S>; 2],
+    logarithm: Lanes<S>,
+    out: &mut [f64; 2 * WIDTH],
+) {
+    let (out, _) = S::as_mut_simd_f64s(out);
+    out[0] = logarithm.values();
+    if SOURCES {
+        out[WIDTH / S::F64_LANES] =
+            source_term(simd, edge, &ends[0], ends[1].distance, logarithm).values();
     }
 }
 
@@ -302,29 +345,80 @@ fn corner_values<S: Simd, const FAR: bool, const SOURCES: bool>(
     let coplanar = c(panel.coplanar);
     let angle = height.abs().where_less(coplanar, c(0.0), angle);
     let height = height.abs().where_less(coplanar, c(0.0), height);
-    let sloped = |i: usize, values: [Lanes<S>; 3]| {
-        let [a, b, last] = panel.slopes[i].map(c);
-        a.mul_add(values[0], b.mul_add(values[1], last * values[2]))
-    };
-    let doublet =
-        |i: usize, shape: Lanes<S>| shape.mul_add(angle, -(height * sloped(i, logarithms)));
-    let (a, b) = (doublet(0, first), doublet(1, second));
+    let a = first.mul_add(
+        angle,
+        -(height * weighted(simd, &panel.slopes[0], logarithms)),
+    );
+    let b = second.mul_add(
+        angle,
+        -(height * weighted(simd, &panel.slopes[1], logarithms)),
+    );
     let doublets = [a, b, angle - a - b];
     if !SOURCES {
         return (doublets, doublets);
     }
     let third = c(1.0) - first - second;
-    let [h0, h1, h2] = panel.heights.map(c);
-    let whole = (first * h0).mul_add(
+    let heights = &panel.heights;
+    let whole = (first * c(heights[0])).mul_add(
         logarithms[0],
-        (second * h1).mul_add(
+        (second * c(heights[1])).mul_add(
             logarithms[1],
-            (third * h2).mul_add(logarithms[2], -(height * angle)),
+            (third * c(heights[2])).mul_add(logarithms[2], -(height * angle)),
         ),
     );
-    let source = |i: usize, shape: Lanes<S>| shape.mul_add(whole, sloped(i, terms));
-    let (a, b) = (source(0, first), source(1, second));
+    let a = first.mul_add(whole, weighted(simd, &panel.slopes[0], terms));
+    let b = second.mul_add(whole, weighted(simd, &panel.slopes[1], terms));
     (doublets, [a, b, whole - a - b])
+}
+
+/// Σ wᵢ xᵢ.
+#[inline(always)]
+fn weighted<S: Simd>(simd: S, weights: &[f64; 3], values: [Lanes<S>; 3]) -> Lanes<S> {
+    let c = |value| Lanes::splat(simd, value);
+    c(weights[0]).mul_add(
+        values[0],
+        c(weights[1]).mul_add(values[1], c(weights[2]) * values[2]),
+    )
+}
+
+/// The `chunk`-th vector of points.
+#[inline(always)]
+pub(crate) fn points_of<S: Simd, const N: usize>(
+    simd: S,
+    points: &[[f64; N]; 3],
+    chunk: usize,
+) -> [Lanes<S>; 3] {
+    let lanes = |values: &[f64; N]| Lanes::new(simd, S::as_simd_f64s(values).0[chunk]);
+    [lanes(&points[0]), lanes(&points[1]), lanes(&points[2])]
+}
+
+/// A vertex as it was kept.
+#[inline(always)]
+fn kept<S: Simd>(simd: S, values: &[f64; 4 * WIDTH]) -> Seen<S> {
+    let chunks = WIDTH / S::F64_LANES;
+    let (v, _) = S::as_simd_f64s(values);
+    let lanes = |values: S::f64s| Lanes::new(simd, values);
+    Seen {
+        offset: [lanes(v[0]), lanes(v[chunks]), lanes(v[2 * chunks])],
+        distance: lanes(v[3 * chunks]),
+    }
+}
+
+/// Logarithm and source term of an edge of a panel whose corners are seen.
+#[inline(always)]
+fn edge_terms<S: Simd>(
+    simd: S,
+    edge: &SharedEdge,
+    [a, b]: [&Seen<S>; 2],
+    a_vertex: u32,
+) -> [Lanes<S>; 2] {
+    let ends = if a_vertex == edge.ends[0] {
+        [*a, *b]
+    } else {
+        [*b, *a]
+    };
+    let l = logarithm::<S, false>(simd, edge, &ends);
+    [l, source_term(simd, edge, &ends[0], ends[1].distance, l)]
 }
 
 impl Evaluation<'_> {
@@ -348,51 +442,52 @@ impl Evaluation<'_> {
         let chunks = WIDTH / S::F64_LANES;
         let lanes = |values: S::f64s| Lanes::new(simd, values);
         for chunk in 0..chunks {
-            let point: [Lanes<S>; 3] = [0, 1, 2].map(|a: usize| {
-                let (vectors, _) = S::as_simd_f64s(&points[a]);
-                lanes(vectors[chunk])
-            });
+            let point = points_of(simd, points, chunk);
             for (vertex, out) in block.vertices.iter().zip(&mut scratch.vertices) {
                 let s = seen(simd, vertex, point);
                 let (out, _) = S::as_mut_simd_f64s(out);
-                for (i, value) in [s.offset[0], s.offset[1], s.offset[2], s.distance]
-                    .into_iter()
-                    .enumerate()
-                {
-                    out[i * chunks] = value.values();
-                }
+                out[0] = s.offset[0].values();
+                out[chunks] = s.offset[1].values();
+                out[2 * chunks] = s.offset[2].values();
+                out[3 * chunks] = s.distance.values();
             }
-            let load = |vertex: u32| {
-                let (v, _) = S::as_simd_f64s(&scratch.vertices[vertex as usize]);
-                Seen {
-                    offset: [lanes(v[0]), lanes(v[chunks]), lanes(v[2 * chunks])],
-                    distance: lanes(v[3 * chunks]),
-                }
-            };
-            for (edge, out) in block.edges.iter().zip(&mut scratch.edges) {
-                let (a, b) = (load(edge.ends[0]), load(edge.ends[1]));
-                let l = logarithm::<S, FAR>(simd, edge, a.distance, b.distance);
-                let (out, _) = S::as_mut_simd_f64s(out);
-                out[0] = l.values();
-                if SOURCES {
-                    out[chunks] = source_term(simd, edge, &a, b.distance, l).values();
-                }
+            let vertices = &scratch.vertices;
+            let mut edges = block.edges.iter();
+            let mut kept_edges = scratch.edges.iter_mut();
+            while let (Some(edge), Some(out)) = (edges.next(), kept_edges.next()) {
+                let ends = ends_of(simd, edge, vertices);
+                // A division serves two edges: dividers are what the lanes wait for.
+                let next = if FAR {
+                    edges.next().zip(kept_edges.next())
+                } else {
+                    None
+                };
+                let Some((other, other_out)) = next else {
+                    let l = logarithm::<S, FAR>(simd, edge, &ends);
+                    keep_edge::<S, SOURCES>(simd, edge, &ends, l, out);
+                    continue;
+                };
+                let other_ends = ends_of(simd, other, vertices);
+                let [l, other_l] = far_logarithms(simd, [edge, other], [&ends, &other_ends]);
+                keep_edge::<S, SOURCES>(simd, edge, &ends, l, out);
+                keep_edge::<S, SOURCES>(simd, other, &other_ends, other_l, other_out);
             }
             let (doublets, _) = S::as_mut_simd_f64s(doublets);
             let (sources, _) = S::as_mut_simd_f64s(sources);
             for (p, (panel, places)) in block.panels.iter().zip(&block.corners).enumerate() {
-                let corners = panel.corners.map(load);
-                let edge = |i: usize| {
-                    let (v, _) = S::as_simd_f64s(&scratch.edges[panel.edges[i] as usize]);
-                    (lanes(v[0]), lanes(v[chunks]))
-                };
-                let edges = [edge(0), edge(1), edge(2)];
+                let [i, j, k] = panel.corners;
+                let first = kept(simd, &vertices[i as usize]);
+                let second = kept(simd, &vertices[j as usize]);
+                let third = kept(simd, &vertices[k as usize]);
+                let (e0, _) = S::as_simd_f64s(&scratch.edges[panel.edges[0] as usize]);
+                let (e1, _) = S::as_simd_f64s(&scratch.edges[panel.edges[1] as usize]);
+                let (e2, _) = S::as_simd_f64s(&scratch.edges[panel.edges[2] as usize]);
                 let (d, s) = corner_values::<S, FAR, SOURCES>(
                     simd,
                     panel,
-                    [&corners[0], &corners[1], &corners[2]],
-                    edges.map(|e| e.0),
-                    edges.map(|e| e.1),
+                    [&first, &second, &third],
+                    [lanes(e0[0]), lanes(e1[0]), lanes(e2[0])],
+                    [lanes(e0[chunks]), lanes(e1[chunks]), lanes(e2[chunks])],
                 );
                 for i in 0..3 {
                     let at = places[i] as usize * chunks + chunk;
@@ -422,30 +517,24 @@ impl WithSimd for NearEvaluation<'_> {
             doublets: [[0.0; NEAR_POINTS]; 3],
             sources: [[0.0; NEAR_POINTS]; 3],
         };
+        let vertices = &self.block.vertices;
+        let edges = &self.block.edges;
+        let [i, j, k] = panel.corners;
+        let [e0, e1, e2] = panel.edges;
         for chunk in 0..NEAR_POINTS / S::F64_LANES {
-            let point: [Lanes<S>; 3] = [0, 1, 2].map(|a: usize| {
-                let (vectors, _) = S::as_simd_f64s(&self.points[a]);
-                Lanes::new(simd, vectors[chunk])
-            });
-            let corners = panel
-                .corners
-                .map(|v| seen(simd, &self.block.vertices[v as usize], point));
-            let edge = |i: usize| {
-                let edge = &self.block.edges[panel.edges[i] as usize];
-                let (mut a, mut b) = (&corners[(i + 1) % 3], &corners[(i + 2) % 3]);
-                if panel.corners[(i + 1) % 3] != edge.ends[0] {
-                    (a, b) = (b, a);
-                }
-                let l = logarithm::<S, false>(simd, edge, a.distance, b.distance);
-                (l, source_term(simd, edge, a, b.distance, l))
-            };
-            let edges = [edge(0), edge(1), edge(2)];
+            let point = points_of(simd, self.points, chunk);
+            let first = seen(simd, &vertices[i as usize], point);
+            let second = seen(simd, &vertices[j as usize], point);
+            let third = seen(simd, &vertices[k as usize], point);
+            let e0 = edge_terms(simd, &edges[e0 as usize], [&second, &third], j);
+            let e1 = edge_terms(simd, &edges[e1 as usize], [&third, &first], k);
+            let e2 = edge_terms(simd, &edges[e2 as usize], [&first, &second], i);
             let (d, s) = corner_values::<S, false, true>(
                 simd,
                 panel,
-                [&corners[0], &corners[1], &corners[2]],
-                edges.map(|e| e.0),
-                edges.map(|e| e.1),
+                [&first, &second, &third],
+                [e0[0], e1[0], e2[0]],
+                [e0[1], e1[1], e2[1]],
             );
             for i in 0..3 {
                 let (doublets, _) = S::as_mut_simd_f64s(&mut out.doublets[i]);

@@ -290,12 +290,13 @@ pub fn solve(problem: &Problem<'_>, progress: &dyn Progress) -> Result<Solution,
         &prepared.wake,
         problem.shape_change,
     );
-    let parts: Vec<&Mat<f64>> = std::iter::once(&prepared.selector)
-        .chain(&functionals.p0)
-        .chain([&functionals.p1])
-        .collect();
+    let parts: Vec<&Mat<f64>> = functionals.p0.iter().chain([&functionals.p1]).collect();
     let mut adjoint = concatenate(&parts);
-    prepared.body.operator.solve_transpose(&mut adjoint);
+    prepared
+        .body
+        .operator
+        .solve_transpose(&mut adjoint, progress);
+    let adjoint = concatenate(&[&prepared.body.jump_adjoint, &adjoint]);
     let prepared = prepared.without_operator();
     let blocks = prepared.influence().blocks(adjoint.as_ref(), progress)?;
     let reduction = Reduction {

@@ -5,15 +5,15 @@
 //!
 //! $$ m_i = \sum_q w_{iq}\, D_q , $$
 //!
-//! i the corners of the test triangle, and added to the rows of its vertices. Nothing of
+//! i the vertices of the group, and added to their rows. Nothing of
 //! the size points × panels is ever held.
 
 use crate::galerkin::Galerkin;
-use crate::lanes::WIDTH;
+use crate::lanes::{Lanes, WIDTH};
 use crate::near_field::{NEAR, TestTriangle};
 use crate::panel_block::{BlockScratch, PanelBlock, Points, enclosing};
 use fladder_mesh::Vec3;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Test triangles of a cluster; fixed, so that the order of sums does not depend on the
 /// number of threads.
@@ -31,6 +31,10 @@ pub(crate) struct TestGroup {
     pub(crate) weights: [PointValues; 3],
     /// Row of each triangle's corner in its cluster.
     pub(crate) rows: [[u32; WIDTH]; 3],
+    /// Rows that the group touches.
+    places: Vec<u32>,
+    /// Of every eight of them: their weights at point q of each triangle.
+    tested: Vec<[[[f64; WIDTH]; WIDTH]; 3]>,
 }
 
 /// The points of a group, or their images.
@@ -83,6 +87,18 @@ impl TestGroup {
                 }
             }
         }
+        let mut touched: Vec<u32> = places.iter().flatten().copied().collect();
+        touched.sort_unstable();
+        touched.dedup();
+        let mut tested = vec![[[[0.0; WIDTH]; WIDTH]; 3]; touched.len().div_ceil(WIDTH)];
+        for (weights, places) in weights.iter().zip(&places) {
+            for (l, place) in places.iter().enumerate() {
+                let at = touched.partition_point(|x| x < place);
+                for (q, values) in weights.iter().enumerate() {
+                    tested[at / WIDTH][q][l][at % WIDTH] += values[l];
+                }
+            }
+        }
         let mut seen = vec![SeenFrom::new(&galerkin.tests, lane, 1.0)];
         if let Some(sign) = galerkin.image.sign() {
             seen.push(SeenFrom::new(&galerkin.image_tests, lane, sign));
@@ -92,6 +108,8 @@ impl TestGroup {
             seen,
             weights,
             rows: places,
+            places: touched,
+            tested,
         }
     }
 }
@@ -122,7 +140,7 @@ impl SeenFrom {
     }
 }
 
-/// Tested influences of one block on one cluster, by columns: rows × places of doublets,
+/// Tested influences of one block on one cluster, by rows: rows × places of doublets,
 /// rows × corners of sources.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tile {
@@ -191,8 +209,8 @@ impl TileScratch {
                 }
             }
             let arch = self.arch;
-            arch.dispatch(|| test(group, rows, &self.doublets, &mut tile.doublets));
-            arch.dispatch(|| test(group, rows, &self.sources, &mut tile.sources));
+            test(arch, group, &self.doublets, &mut tile.doublets);
+            test(arch, group, &self.sources, &mut tile.sources);
         }
     }
 
@@ -266,23 +284,104 @@ fn add_scaled(scale: f64, values: &[f64], out: &mut [f64]) {
     }
 }
 
-/// Adds Σ_q w_iq values_q to the rows of the corners, column by column.
-#[inline(always)]
-pub(crate) fn test(group: &TestGroup, rows: usize, values: &[Vec<f64>; 3], out: &mut [f64]) {
-    let [first, second, third] = values;
-    let columns = out
-        .chunks_exact_mut(rows)
-        .zip(first.chunks_exact(WIDTH))
-        .zip(second.chunks_exact(WIDTH))
-        .zip(third.chunks_exact(WIDTH));
-    for (((column, a), b), c) in columns {
-        for (weights, places) in group.weights.iter().zip(&group.rows) {
-            let mut tested = [0.0; WIDTH];
-            for l in 0..WIDTH {
-                tested[l] = weights[0][l] * a[l] + weights[1][l] * b[l] + weights[2][l] * c[l];
+/// Adds Σ_q w_iq values_q to the rows of the group's vertices; `out` is by rows.
+pub(crate) fn test(arch: Arch, group: &TestGroup, values: &[Vec<f64>; 3], out: &mut [f64]) {
+    arch.dispatch(Testing { group, values, out });
+}
+
+struct Testing<'a> {
+    group: &'a TestGroup,
+    values: &'a [Vec<f64>; 3],
+    out: &'a mut [f64],
+}
+
+/// Columns tested together: weights are loaded once for them.
+const TOGETHER: usize = 4;
+
+impl WithSimd for Testing<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        // Lanes are vertices here: a group has about ten, its corners share them.
+        for first in (0..self.group.tested.len()).step_by(2) {
+            let values = self.values.each_ref().map(|v| v.as_chunks::<WIDTH>().0);
+            if first + 1 < self.group.tested.len() {
+                self.rows_from::<S, 2>(simd, first, values);
+            } else {
+                self.rows_from::<S, 1>(simd, first, values);
             }
-            for (value, &row) in tested.iter().zip(places) {
-                column[row as usize] += value;
+        }
+    }
+}
+
+impl Testing<'_> {
+    /// Eight rows in each of `PARTS` parts.
+    #[inline(always)]
+    fn rows_from<S: Simd, const PARTS: usize>(
+        &mut self,
+        simd: S,
+        first: usize,
+        values: [&[[f64; WIDTH]]; 3],
+    ) {
+        let count = values[0].len();
+        let whole = count - count % TOGETHER;
+        for column in (0..whole).step_by(TOGETHER) {
+            self.columns::<S, PARTS, TOGETHER>(simd, first, column, values);
+        }
+        for column in whole..count {
+            self.columns::<S, PARTS, 1>(simd, first, column, values);
+        }
+    }
+
+    #[inline(always)]
+    fn columns<S: Simd, const PARTS: usize, const COLUMNS: usize>(
+        &mut self,
+        simd: S,
+        first: usize,
+        column: usize,
+        values: [&[[f64; WIDTH]]; 3],
+    ) {
+        let tested = &self.group.tested[first..first + PARTS];
+        let mut sums = [[[0.0; WIDTH]; COLUMNS]; PARTS];
+        for chunk in 0..WIDTH / S::F64_LANES {
+            let mut totals = [[Lanes::splat(simd, 0.0); COLUMNS]; PARTS];
+            for (q, values) in values.iter().enumerate() {
+                let values = &values[column..column + COLUMNS];
+                for lane in 0..WIDTH {
+                    for p in 0..PARTS {
+                        let (weights, _) = S::as_simd_f64s(&tested[p][q][lane]);
+                        let weights = Lanes::new(simd, weights[chunk]);
+                        for c in 0..COLUMNS {
+                            let value = Lanes::splat(simd, values[c][lane]);
+                            totals[p][c] = weights.mul_add(value, totals[p][c]);
+                        }
+                    }
+                }
+            }
+            for p in 0..PARTS {
+                for c in 0..COLUMNS {
+                    let (out, _) = S::as_mut_simd_f64s(&mut sums[p][c]);
+                    out[chunk] = totals[p][c].values();
+                }
+            }
+        }
+        let count = values[0].len();
+        for (places, sums) in self.group.places[first * WIDTH..].chunks(WIDTH).zip(&sums) {
+            // Constant bounds, so that this is a transposition in registers.
+            let mut by_row = [[0.0; COLUMNS]; WIDTH];
+            for (r, values) in by_row.iter_mut().enumerate() {
+                for (value, column) in values.iter_mut().zip(sums) {
+                    *value = column[r];
+                }
+            }
+            for (&row, values) in places.iter().zip(&by_row) {
+                let from = row as usize * count + column;
+                if let Some(out) = self.out[from..].first_chunk_mut::<COLUMNS>() {
+                    for (out, value) in out.iter_mut().zip(values) {
+                        *out += value;
+                    }
+                }
             }
         }
     }

@@ -95,11 +95,12 @@ impl WakeInfluence<'_> {
                             break;
                         }
                         let tile = self.tile(sheet, b, cluster, &own, working);
-                        let tile = MatRef::from_column_major_slice(
-                            &tile[..cluster.rows.len() * block.columns.len()],
+                        let tile = MatRef::from_row_major_slice(
+                            tile,
                             cluster.rows.len(),
-                            block.columns.len(),
-                        );
+                            block.places(),
+                        )
+                        .subcols(0, block.columns.len());
                         matmul(&mut sum, Accum::Add, left, tile, 1.0, Par::Seq);
                     }
                     progress.advance(1);
@@ -147,7 +148,7 @@ impl WakeInfluence<'_> {
                         }
                         let tile = scratch.tile(cluster, block, &path.nodes);
                         let height = cluster.rows.len();
-                        let tile = MatRef::from_column_major_slice(tile, height, columns);
+                        let tile = MatRef::from_row_major_slice(tile, height, columns);
                         matmul(&mut sum, Accum::Add, left, tile, 1.0, Par::Seq);
                     }
                     progress.advance(1);
@@ -194,22 +195,14 @@ impl WakeInfluence<'_> {
                     if progress.cancelled() {
                         return out;
                     }
-                    let tile = scratch.tile(cluster, block, &path.nodes);
-                    for (of_line, &line) in tile
-                        .chunks_exact(2 * height * path.nodes.len())
-                        .zip(&block.lines)
-                    {
-                        let mut sums = vec![c64::new(0.0, 0.0); height];
-                        for (values, decay) in of_line.chunks_exact(2 * height).zip(&decays) {
-                            let (re, im) = values.split_at(height);
-                            for ((sum, re), im) in sums.iter_mut().zip(re).zip(im) {
-                                *sum += c64::new(*re, *im) * decay;
-                            }
-                        }
-                        for &(column, weight) in &wake.threads[wake.far_threads[line as usize]]
-                        {
-                            for (r, sum) in sums.iter().enumerate() {
-                                out[(r, column)] += weight * sum;
+                    let tile = scratch.summed_tile(cluster, block, &path.nodes, &decays);
+                    for (r, row) in tile.chunks_exact(block.columns(1)).enumerate() {
+                        for (value, &line) in row.chunks_exact(2).zip(&block.lines) {
+                            let value = c64::new(value[0], value[1]);
+                            for &(column, weight) in
+                                &wake.threads[wake.far_threads[line as usize]]
+                            {
+                                out[(r, column)] += weight * value;
                             }
                         }
                     }
@@ -232,7 +225,7 @@ impl WakeInfluence<'_> {
         Ok(rows)
     }
 
-    /// Tested influence of one block of a sheet: rows × places, by columns.
+    /// Tested influence of one block of a sheet: rows × places, by rows.
     fn tile<'w>(
         &self,
         sheet: &JumpSheet,
@@ -280,8 +273,8 @@ impl WakeInfluence<'_> {
                                     weights[q][lane] * free * POINTS[q][corner]
                                 })
                                 .sum();
-                            let column = panels.place(panel, corner);
-                            tile[column * cluster.rows.len() + places[lane] as usize] -= sum;
+                            let place = panels.place(panel, corner);
+                            tile[places[lane] as usize * panels.places() + place] -= sum;
                         }
                     }
                 }
@@ -315,12 +308,13 @@ impl WakeInfluence<'_> {
                             return out;
                         }
                         let tile = self.tile(sheet, b, cluster, own, working);
-                        for (values, &slot) in tile.chunks_exact(height).zip(&block.columns) {
+                        for (place, &slot) in block.columns.iter().enumerate() {
                             let slot = slot as usize;
+                            let values = tile.iter().skip(place).step_by(block.places());
                             for &(column, share) in &wake.threads[wake.slots[slot].thread] {
                                 let factor = weights[slot] * share;
                                 let out = &mut out[column * height..(column + 1) * height];
-                                for (o, v) in out.iter_mut().zip(values) {
+                                for (o, v) in out.iter_mut().zip(values.clone()) {
                                     *o += factor * *v;
                                 }
                             }
