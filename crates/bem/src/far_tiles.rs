@@ -15,7 +15,7 @@ use fladder_mesh::Vec3;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Strips of a block: their tile on a cluster stays in the second cache.
-const STRIPS: usize = 4;
+const STRIPS: usize = 8;
 
 /// Neighbouring strips and the streamlines they lie between.
 #[derive(Clone, Debug)]

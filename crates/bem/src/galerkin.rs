@@ -28,7 +28,7 @@ use fladder_mesh::Vec3;
 use rayon::prelude::*;
 
 /// Clusters whose rows are held in memory at once.
-const CLUSTERS_AT_ONCE: usize = 16;
+pub(crate) const CLUSTERS_AT_ONCE: usize = 16;
 
 /// Normals, areas, gradients and test points of a cut surface.
 #[derive(Clone, Debug)]

@@ -16,8 +16,10 @@
 //! | `body_path`, `body_trace`, `body_node`, `carry` | lines that carry a jump down a body |
 //! | `stations`, `wake`, `wake_builder`, `wake_jumps`, `sheet_lines`, `wake_sheet` | the sheet and what jump it carries |
 //! | `strike` | sheets that run into bodies |
-//! | `contour`, `far_wake` | its semi-infinite part on a path in the complex plane |
-//! | `galerkin`, `near_field`, `dense` | the equations and their factorisation |
+//! | `contour`, `far_wake`, `far_tiles` | its semi-infinite part on a path in the complex plane |
+//! | `lanes`, `panel_block`, `ordering`, `tiles` | eight points at once, blocks of close panels, test triangles |
+//! | `galerkin`, `near_field` | the equations |
+//! | `dense`, `blocked_lu` | their factorisation |
 //! | `image` | half models |
 //! | `guards` | what the mesh resolves |
 //! | `onset`, `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
