@@ -11,8 +11,8 @@ mod structure;
 mod suggest;
 
 pub use aerodynamics::{
-    AnalyticMode, Axis, Flow, Gaf, Mesh, Modes, Reference, Rotation, Term, TrailingEdges, Wake,
-    WakeDirection, WakeMode,
+    AnalyticMode, Axis, Flow, Gaf, Mesh, Modes, Reference, Rotation, SolverChoice, Term,
+    TrailingEdges, Wake, WakeDirection, WakeMode,
 };
 pub use flight::{Flight, Range, Refine, Speeds, Stability, Thrust, Trim};
 pub use one_or_many::OneOrMany;
