@@ -150,6 +150,33 @@ impl<T: RealField + Copy> BlockedLu<T> {
     }
 }
 
+impl<T: RealField + Copy> BlockedLu<T> {
+    /// The same by one thread, for a matrix of one block.
+    pub(crate) fn solve_alone(&self, mut b: MatMut<'_, T>, transposed: bool) {
+        let n = self.size;
+        let lu = MatRef::from_column_major_slice(&self.factors, n, n);
+        let gather = |mut b: MatMut<'_, T>, from: &[usize]| {
+            let mut values = Vec::with_capacity(n);
+            for j in 0..b.ncols() {
+                values.clear();
+                values.extend(from.iter().map(|&i| b[(i, j)]));
+                for (i, value) in values.iter().enumerate() {
+                    b[(i, j)] = *value;
+                }
+            }
+        };
+        if transposed {
+            solve_lower_triangular_in_place(lu.transpose(), b.rb_mut(), Par::Seq);
+            solve_unit_upper_triangular_in_place(lu.transpose(), b.rb_mut(), Par::Seq);
+            gather(b, &self.inverse);
+        } else {
+            gather(b.rb_mut(), &self.forward);
+            solve_unit_lower_triangular_in_place(lu, b.rb_mut(), Par::Seq);
+            solve_upper_triangular_in_place(lu, b, Par::Seq);
+        }
+    }
+}
+
 /// Part of a matrix that a substitution takes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Triangle {

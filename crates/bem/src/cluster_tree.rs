@@ -54,6 +54,22 @@ impl ClusterTree {
         &self.order[cluster.first..cluster.end]
     }
 
+    /// The largest clusters of no more than `size` things; they cover the whole.
+    pub(crate) fn parts(&self, size: usize) -> Vec<usize> {
+        let mut found = Vec::new();
+        let mut open = vec![0];
+        while let Some(cluster) = open.pop().filter(|_| !self.clusters.is_empty()) {
+            let here = &self.clusters[cluster];
+            match here.halves {
+                Some([left, right]) if here.end - here.first > size => {
+                    open.extend([right, left]);
+                }
+                _ => found.push(cluster),
+            }
+        }
+        found
+    }
+
     fn grow(&mut self, spheres: &[(Vec3, f64)], first: usize, end: usize) -> usize {
         let part = &mut self.order[first..end];
         let at = |i: &u32| spheres[*i as usize].0;

@@ -10,6 +10,7 @@
 //! do not depend on the number of threads.
 
 use crate::aca::{Entries, LowRank, approximate};
+use crate::blocked_lu::BlockedLu;
 use crate::cluster_tree::{ClusterTree, Pair, pairs};
 use crate::cut::CutSurface;
 use crate::dense::BodyOperator;
@@ -33,7 +34,10 @@ const TOGETHER: usize = 32;
 const PRODUCTS_AT_ONCE: usize = 256;
 
 /// Residual of a solution, in tolerances of the blocks.
-const RESIDUAL: f64 = 0.3;
+const RESIDUAL: f64 = 0.2;
+
+/// Unknowns of a diagonal block.
+const DIAGONAL: usize = 256;
 
 /// c φ − D φ.
 #[derive(Debug)]
@@ -42,6 +46,8 @@ pub(crate) struct HierarchicalOperator {
     blocks: Vec<(Pair, Stored)>,
     /// Free terms in the order of the tree: row, column and value.
     local: Vec<(u32, u32, f32)>,
+    /// Factors of diagonal blocks, and the clusters they belong to.
+    diagonal: Vec<(usize, BlockedLu<f32>)>,
     tolerance: f64,
 }
 
@@ -337,12 +343,25 @@ impl HierarchicalOperator {
             })
             .collect::<Result<_, _>>()?;
         let local = local_terms(galerkin, &tree, free_terms);
+        let diagonal = diagonal_factors(&surface, &tree, &local);
         Ok(Self {
             tree,
             blocks,
             local,
+            diagonal,
             tolerance,
         })
+    }
+
+    /// M⁻¹ X or M⁻ᵀ X, M the diagonal blocks.
+    fn precondition(&self, x: MatRef<'_, f64>, transposed: bool) -> Mat<f64> {
+        let mut y = Mat::<f32>::from_fn(x.nrows(), x.ncols(), |i, j| x[(i, j)] as f32);
+        for (cluster, factors) in &self.diagonal {
+            let cluster = &self.tree.clusters[*cluster];
+            let part = y.subrows_mut(cluster.first, cluster.end - cluster.first);
+            factors.solve_alone(part, transposed);
+        }
+        Mat::from_fn(x.nrows(), x.ncols(), |i, j| f64::from(y[(i, j)]))
     }
 
     /// A X or Aᵀ X, rows in the order of the tree; by one thread.
@@ -401,10 +420,13 @@ impl HierarchicalOperator {
                 part[(order[i] as usize, j)]
             });
             let apply = |x: MatRef<'_, f64>| {
-                (!progress.cancelled()).then(|| self.product(x, transposed))
+                (!progress.cancelled()).then(|| {
+                    self.product(self.precondition(x, transposed).as_ref(), transposed)
+                })
             };
             let solution = solve_block(apply, &right, RESIDUAL * self.tolerance)
                 .map_err(|failure| failure.into_error(stage))?;
+            let solution = self.precondition(solution.as_ref(), transposed);
             for (i, &v) in order.iter().enumerate() {
                 for j in 0..part.ncols() {
                     part[(v as usize, j)] = solution[(i, j)];
@@ -463,6 +485,32 @@ fn local_terms(
         local.push((place[v], place[v], 1.0));
     }
     local
+}
+
+fn diagonal_factors(
+    surface: &Surface<'_>,
+    tree: &ClusterTree,
+    local: &[(u32, u32, f32)],
+) -> Vec<(usize, BlockedLu<f32>)> {
+    tree.parts(DIAGONAL)
+        .into_par_iter()
+        .map(|part| {
+            let (cluster, vertices) = (&tree.clusters[part], tree.of(part));
+            let block = Block::new(surface, vertices, Columns::Vertices(vertices)).full();
+            let n = vertices.len();
+            let mut columns: Vec<f32> = (0..n * n)
+                .map(|entry| block[(entry % n, entry / n)] as f32)
+                .collect();
+            let own = cluster.first..cluster.end;
+            for &(i, j, value) in local {
+                let (i, j) = (i as usize, j as usize);
+                if own.contains(&i) && own.contains(&j) {
+                    columns[(j - cluster.first) * n + i - cluster.first] += value;
+                }
+            }
+            (part, BlockedLu::new(columns, n, &|_| {}))
+        })
+        .collect()
 }
 
 /// −S σ for every column of corner values, by compressed blocks that are not kept.

@@ -161,6 +161,14 @@ const SECONDS_PER_FAR_NODE: f64 = 13e-9;
 const SINGLE_FLOPS_PER_SECOND: f64 = 9e10;
 const DOUBLE_FLOPS_PER_SECOND: f64 = 4e10;
 
+/// Of a hierarchical matrix, by n log₂ n: its blocks, and making both operators; one step
+/// of all iterations together for one right-hand side.
+const HIERARCHICAL_BYTES: f64 = 1200.0;
+const SECONDS_OF_COMPRESSION: f64 = 3.5e-4;
+const SECONDS_OF_ITERATION: f64 = 6e-7;
+/// A thread's Krylov spaces, by n.
+const KRYLOV_BYTES: f64 = 32.0 * 32.0 * 8.0;
+
 /// Rows of a cluster of test triangles, about.
 const ROWS_OF_A_CLUSTER: f64 = 96.0;
 
@@ -196,7 +204,8 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
     let solved = functionals + ((1 + onsets) * modes + 6) as f64;
     let factorisation = operators * 2.0 / 3.0 * n.powi(3);
     let substitution = 2.0 * n * n * solved;
-    let (matrices, algebra) = match problem.solver {
+    let growth = n * n.max(2.0).log2();
+    let (operator_bytes, algebra) = match problem.solver {
         Solver::Refined => (
             12.0 * n * n,
             (factorisation + 3.0 * substitution) / SINGLE_FLOPS_PER_SECOND
@@ -206,18 +215,25 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
             8.0 * n * n,
             (factorisation + substitution) / DOUBLE_FLOPS_PER_SECOND,
         ),
-        Solver::Hierarchical { .. } => (0.0, 0.0),
+        Solver::Hierarchical { .. } => (
+            HIERARCHICAL_BYTES * growth + rayon_threads() * KRYLOV_BYTES * n,
+            operators * growth * (SECONDS_OF_COMPRESSION + SECONDS_OF_ITERATION * solved),
+        ),
     };
     let batch = CLUSTERS_AT_ONCE as f64 * ROWS_OF_A_CLUSTER * n * 8.0;
     let sources = 6.0 * sizes.triangles as f64 * ((1 + onsets) * modes) as f64 * 8.0;
     let columns = wake.slots.len() as f64 + 3.0 * sizes.wake_streamlines as f64 * nodes;
+    let is_dense = !matches!(problem.solver, Solver::Hierarchical { .. });
+    let (batch, body) = if is_dense {
+        (batch, body_pairs * SECONDS_PER_BODY_PAIR)
+    } else {
+        (0.0, 0.0)
+    };
+    // The operator is gone when the wake's blocks are made.
+    let at_most = (operator_bytes + batch + sources).max(16.0 * functionals * columns);
     Ok(Plan {
-        memory_bytes: (matrices
-            + batch
-            + sources
-            + 16.0 * functionals * columns
-            + 24.0 * n * solved) as u64,
-        core_seconds: body_pairs * SECONDS_PER_BODY_PAIR
+        memory_bytes: (at_most + 24.0 * n * solved) as u64,
+        core_seconds: body
             + wake_pairs * SECONDS_PER_WAKE_PAIR
             + far * SECONDS_PER_FAR_NODE
             + algebra,
@@ -225,6 +241,10 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
         wake: wake.sheet,
         notes: wake.notes,
     })
+}
+
+fn rayon_threads() -> f64 {
+    rayon::current_num_threads() as f64
 }
 
 /// The cut surface and the wake of a problem.
