@@ -1,6 +1,6 @@
 //! One way to pose a problem, and what can go wrong.
 
-use fladder_bem::{BemError, Flow, LaplaceError, Problem, Silent, Solution, solve};
+use fladder_bem::{BemError, Flow, LaplaceError, Problem, Silent, Solution, Solver, solve};
 use fladder_mesh::shapes::ShapeError;
 use fladder_mesh::{
     CurveGroup, Frame, SurfaceMode, Topology, TrailingEdge, TriMesh, Vec3, trailing_edge,
@@ -109,6 +109,7 @@ impl<'a> Setup<'a> {
             flow: self.flow,
             body_lines: &body_lines,
             moment_point: self.moment_point,
+            solver: Solver::automatic(self.mesh.vertices.len()),
             ..Problem::new(self.mesh, &found, self.modes, self.semichord)
         };
         Ok(solve(&problem, &Silent)?)

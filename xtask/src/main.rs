@@ -1,5 +1,6 @@
 //! Chores: `cargo xtask mesh wing --chord 0.25 --span 2 wing.msh`, `cargo xtask validate`.
 
+mod bench;
 mod mesh;
 mod validate;
 
@@ -19,6 +20,8 @@ enum Chore {
     /// Write the mesh of an analytic shape as Gmsh 4.1
     #[command(subcommand)]
     Mesh(mesh::Shape),
+    /// Measure speed and memory and write benches/RESULTS.md
+    Bench(bench::Bench),
     /// Measure the accuracy of the aerodynamics on fine meshes and write docs/validation.md
     Validate(validate::Validate),
 }
@@ -30,6 +33,10 @@ fn main() -> ExitCode {
                 println!("{said}");
                 ExitCode::SUCCESS
             }
+            Err(error) => refused(&error),
+        },
+        Chore::Bench(bench) => match bench.run() {
+            Ok(()) => ExitCode::SUCCESS,
             Err(error) => refused(&error),
         },
         Chore::Validate(validate) => match validate.run() {

@@ -59,6 +59,24 @@ pub enum Solver {
     },
 }
 
+impl Solver {
+    /// Vertices beyond which a matrix is not kept in full.
+    pub const LARGEST_DENSE: usize = 20_000;
+    /// Keeps Q to some 1e-5 of its largest entry.
+    pub const TOLERANCE: f64 = 1e-6;
+
+    /// Dense up to [`Self::LARGEST_DENSE`] vertices, hierarchical beyond.
+    pub fn automatic(vertices: usize) -> Self {
+        if vertices > Self::LARGEST_DENSE {
+            Self::Hierarchical {
+                tolerance: Self::TOLERANCE,
+            }
+        } else {
+            Self::Refined
+        }
+    }
+}
+
 /// LU factors of Aᵀ.
 #[derive(Debug)]
 pub(crate) enum DenseOperator {

@@ -218,7 +218,7 @@ pub enum SolverChoice {
 }
 
 fn hierarchical_tolerance() -> f64 {
-    1e-6
+    fladder_bem::Solver::TOLERANCE
 }
 
 fn only_zero() -> Vec<f64> {

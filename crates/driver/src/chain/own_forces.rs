@@ -89,12 +89,9 @@ pub(crate) fn problem<'a>(file: &CaseFile, aircraft: &'a Aircraft) -> Problem<'a
     }
 }
 
-/// Vertices beyond which a matrix is not kept in full.
-const LARGEST_DENSE: usize = 20_000;
-
 fn solver(gaf: &case::Gaf, vertices: usize) -> Solver {
     let is_hierarchical = match gaf.solver {
-        SolverChoice::Auto => vertices > LARGEST_DENSE && !gaf.exact,
+        SolverChoice::Auto => vertices > Solver::LARGEST_DENSE && !gaf.exact,
         SolverChoice::Dense => false,
         SolverChoice::Hierarchical => true,
     };
