@@ -441,7 +441,7 @@ fn the_hierarchical_solver_gives_the_forces_of_the_dense_one() {
     };
     let half_shape = NacaWing {
         extent: Extent::Half,
-        ..shape.clone()
+        ..shape
     };
     let flow = Flow {
         alpha: 0.05,

@@ -6,6 +6,11 @@
 //! its negative where Re ζ < 0 and |Im ζ| > ρ, the angles of both factors adding up to
 //! more than π there.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a dispatched function has its instructions"
+)]
+
 use crate::far_wake::{FarWake, INVERSE_FOUR_PI};
 use crate::lanes::{Lanes, WIDTH};
 use crate::panel_block::{Points, dot, points_of, splat3};

@@ -254,10 +254,8 @@ impl<'a> Block<'a> {
     }
 
     fn stored(mut self, is_far: bool, tolerance: f64) -> Result<LowRank, Mat<f64>> {
-        if is_far {
-            if let Some(product) = approximate(&mut self, tolerance) {
-                return Ok(product);
-            }
+        if is_far && let Some(product) = approximate(&mut self, tolerance) {
+            return Ok(product);
         }
         Err(self.full())
     }

@@ -11,6 +11,11 @@
 //!
 //! cut where the next term is below half a unit of rounding.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a dispatched function has its instructions"
+)]
+
 use pulp::Simd;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -55,6 +60,10 @@ pub(crate) struct Lanes<S: Simd> {
     values: S::f64s,
 }
 
+#[expect(
+    clippy::expl_impl_clone_on_copy,
+    reason = "a derived one is not always inlined"
+)]
 impl<S: Simd> Clone for Lanes<S> {
     #[inline(always)]
     fn clone(&self) -> Self {

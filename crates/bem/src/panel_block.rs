@@ -6,6 +6,11 @@
 //! farther than [`FAR_EDGES`] edges, (r_a + r_b + l)/(r_a + r_b − l) is so near to one that
 //! L = 2 atanh(l/(r_a + r_b)) is a short series, and so is the solid angle.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a dispatched function has its instructions"
+)]
+
 use crate::lanes::{Lanes, SERIES_LIMIT, WIDTH};
 use crate::panels::{EDGE_FLOOR, INVERSE_FOUR_PI, Panel, SharedEdge, edges_of, sphere};
 use fladder_mesh::Vec3;

@@ -8,6 +8,11 @@
 //! i the vertices of the group, and added to their rows. Nothing of
 //! the size points × panels is ever held.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a dispatched function has its instructions"
+)]
+
 use crate::galerkin::Galerkin;
 use crate::lanes::{Lanes, WIDTH};
 use crate::near_field::{NEAR, TestTriangle};

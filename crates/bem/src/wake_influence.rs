@@ -267,10 +267,12 @@ impl WakeInfluence<'_> {
                 for &(_, panel) in own.of(t).iter().filter(|(b, _)| *b == block) {
                     for (weights, places) in group.weights.iter().zip(&group.rows) {
                         for corner in 0..3 {
-                            let sum: f64 = (0..3)
-                                .map(|q| {
+                            let sum: f64 = POINTS
+                                .iter()
+                                .enumerate()
+                                .map(|(q, shape)| {
                                     let free = self.free_terms[3 * t as usize + q];
-                                    weights[q][lane] * free * POINTS[q][corner]
+                                    weights[q][lane] * free * shape[corner]
                                 })
                                 .sum();
                             let place = panels.place(panel, corner);
