@@ -17,7 +17,8 @@ pub enum ReadError {
     /// The first line belongs to no format known here.
     #[error(
         "{file} begins with {start:?}, which is no modal result known here \
-         (calculix-frd, fladder-json)"
+         (calculix-frd, fladder-json, gmsh-msh, nastran-f06, nastran-op2, nastran-op4, \
+         nastran-punch, unv)"
     )]
     UnknownFormat {
         /// File as given.
@@ -26,7 +27,10 @@ pub enum ReadError {
         start: String,
     },
     /// A geometry file of no format known here.
-    #[error("{file} begins with {start:?}, which is no geometry known here (CalculiX .inp)")]
+    #[error(
+        "{file} begins with {start:?}, which is no geometry known here (Nastran bulk data, \
+         CalculiX .inp, or a result file with nodes)"
+    )]
     UnknownGeometry {
         /// File as given.
         file: String,
@@ -51,6 +55,16 @@ pub enum ReadError {
         /// Line, counted from 1.
         line: usize,
         /// What is wrong with it.
+        message: String,
+    },
+    /// A binary file whose records do not fit together.
+    #[error("{file}, near byte {byte}: {message}; copy the file again, whole and as binary")]
+    Damaged {
+        /// File as given.
+        file: String,
+        /// Bytes read so far, of the unpacked file.
+        byte: u64,
+        /// What is wrong there.
         message: String,
     },
     /// A header announces another number of records than follow.

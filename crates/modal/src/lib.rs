@@ -13,18 +13,26 @@
 
 mod analytic;
 mod axes_hint;
+mod binary;
 mod block_matrix;
 mod closest;
 mod components;
+mod contents;
 mod dat;
+mod eigenvalues;
 mod element;
 mod error;
 mod face;
 mod format;
+mod frames;
 mod frd;
+mod frd_binary;
 mod half;
 mod inp;
 mod model;
+mod msh;
+mod msh_scanner;
+mod nastran;
 mod neutral;
 mod offset;
 mod raw;
@@ -38,10 +46,14 @@ mod summary;
 mod text;
 mod transfer;
 mod units;
+mod unv;
+mod unv_modes;
 
 pub use analytic::{AnalyticError, AnalyticMode, Component, Motion, PolynomialTerm};
 pub use block_matrix::BlockMatrix;
 pub use components::Mapping;
+pub use contents::{FileContents, FileMatrix, FileMode, read_contents};
+pub use eigenvalues::Eigenvalue;
 pub use element::ElementKind;
 pub use error::{ReadError, TransferError};
 pub use format::Format;
@@ -50,6 +62,7 @@ pub use model::{
     ElasticMode, PARTICIPATION_LIMIT, RigidBodySettings, StructuralModel, StructureError,
     StructureSettings, load,
 };
+pub use nastran::op4::{Op4Matrix, read_op4};
 pub use neutral::{SCHEMA, write as write_neutral};
 pub use read::read_structure;
 pub use result::{Element, ModalResult, Mode, NamedSet, Node};

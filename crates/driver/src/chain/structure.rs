@@ -184,8 +184,10 @@ fn format_named(file: &CaseFile, name: &str) -> Result<modal::Format, Failure> {
             format!("the format `{name}` is not known"),
             file.places.of("structure.format"),
             "the file cannot be read",
-            "leave the key out to have the format told from the content; known are calculix-frd \
-             and fladder-json",
+            format!(
+                "leave the key out to have the format told from the content; known are {}",
+                modal::Format::names().collect::<Vec<_>>().join(", ")
+            ),
         )
     })
 }
