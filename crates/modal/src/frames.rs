@@ -171,11 +171,14 @@ impl Frames {
 
     fn place_of(&mut self, node: u64, depth: usize) -> Result<Vec3, String> {
         let Some(grid) = self.grids.get(&node).copied() else {
-            return Err(format!("node {node} is not there"));
+            return Err(format!("node {node} of a coordinate system is not there"));
         };
         let frame = self.frame(grid.placed_in, depth);
-        let place = frame.map_err(|message| format!("node {node}: {message}"))?;
-        Ok(place.place(&grid.coordinates))
+        let about = |message| match depth {
+            0 => format!("node {node}: {message}"),
+            _ => message,
+        };
+        Ok(frame.map_err(about)?.place(&grid.coordinates))
     }
 
     fn frame(&mut self, id: u64, depth: usize) -> Result<Frame, String> {
@@ -193,16 +196,15 @@ impl Frames {
         let Some((coordinates, points)) = self.definitions.get(&id).cloned() else {
             return Err(format!("coordinate system {id} is not defined"));
         };
-        let about = |message| format!("coordinate system {id}: {message}");
         let points = match points {
             Points::In(other, points) => {
-                let other = self.frame(other, depth + 1).map_err(about)?;
+                let other = self.frame(other, depth + 1)?;
                 points.map(|point| other.place(&point))
             }
             Points::Nodes([a, b, c]) => [
-                self.place_of(a, depth + 1).map_err(about)?,
-                self.place_of(b, depth + 1).map_err(about)?,
-                self.place_of(c, depth + 1).map_err(about)?,
+                self.place_of(a, depth + 1)?,
+                self.place_of(b, depth + 1)?,
+                self.place_of(c, depth + 1)?,
             ],
         };
         let frame = Frame::from_points(coordinates, points)

@@ -267,7 +267,6 @@ impl Reader {
         for _ in 0..self.scanner.text_int()? {
             integers.push(self.scanner.text_int()?);
         }
-        self.scanner.end_of_line()?;
         let (Some(&components), Some(&count)) = (integers.get(1), integers.get(2)) else {
             return Err(self
                 .scanner

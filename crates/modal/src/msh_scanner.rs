@@ -81,14 +81,6 @@ impl Scanner {
         }
     }
 
-    /// Passes over the rest of a line, behind which binary numbers may begin.
-    pub(crate) fn end_of_line(&mut self) -> Result<(), ReadError> {
-        if self.is_binary() {
-            while self.byte()? != b'\n' {}
-        }
-        Ok(())
-    }
-
     fn byte(&mut self) -> Result<u8, ReadError> {
         let [byte] = self.bytes()?;
         self.line += usize::from(byte == b'\n');
@@ -144,8 +136,13 @@ impl Scanner {
             .parse()
             .map_err(|_| self.wrong(format!("{word:?} is no whole number")))?;
         // Binary numbers begin behind the line's end.
-        if self.is_binary() && self.peek()? == Some(b'\n') {
-            self.byte()?;
+        if self.is_binary() {
+            while matches!(self.peek()?, Some(b' ' | b'\r')) {
+                self.byte()?;
+            }
+            if self.peek()? == Some(b'\n') {
+                self.byte()?;
+            }
         }
         Ok(number)
     }

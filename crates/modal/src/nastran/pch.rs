@@ -14,11 +14,29 @@ use crate::text::{Lines, field, real};
 use fladder_mesh::Vec3;
 use std::path::Path;
 
+/// Vectors of nodes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Vectors {
+    Shapes,
+    /// Shapes where an eigenvalue is stated, else static.
+    Displacements,
+}
+
 /// What the comment lines of a block say.
 #[derive(Default)]
 struct Head {
-    is_eigenvector: bool,
+    vectors: Option<Vectors>,
     mode: Option<(u32, f64)>,
+}
+
+impl Head {
+    fn is_shape(&self) -> bool {
+        match self.vectors {
+            Some(Vectors::Shapes) => true,
+            Some(Vectors::Displacements) => self.mode.is_some(),
+            None => false,
+        }
+    }
 }
 
 struct Reader {
@@ -42,7 +60,7 @@ pub(crate) fn read(path: &Path) -> Result<(Geometry, ModeTable), ReadError> {
         let line = line.to_owned();
         if line.starts_with('$') {
             reader.comment(&line)?;
-        } else if !line.trim().is_empty() && reader.head.is_eigenvector {
+        } else if !line.trim().is_empty() && reader.head.is_shape() {
             reader.point(&line)?;
         }
     }
@@ -73,18 +91,19 @@ impl Reader {
             .to_ascii_uppercase();
         match word.as_str() {
             "TITLE" => self.head = Head::default(),
-            "EIGENVECTOR" | "EIGENVECTORS" => self.head.is_eigenvector = true,
-            "DISPLACEMENTS" | "DISPLACEMENT" | "SPCF" | "OLOADS" | "VELOCITY"
-            | "ACCELERATION" => {
-                self.head.is_eigenvector = false;
+            "EIGENVECTOR" | "EIGENVECTORS" => self.head.vectors = Some(Vectors::Shapes),
+            "DISPLACEMENT" | "DISPLACEMENTS" => {
+                self.head.vectors = Some(Vectors::Displacements);
             }
-            "REAL-IMAGINARY" | "MAGNITUDE-PHASE" if self.head.is_eigenvector => {
+            "REAL-IMAGINARY" | "MAGNITUDE-PHASE"
+                if self.head.vectors == Some(Vectors::Shapes) =>
+            {
                 return Err(self.lines.unsupported(format!(
                     "line {}: the eigenvectors are complex; real modes (SOL 103) are needed",
                     self.lines.number()
                 )));
             }
-            "POINT" if self.head.is_eigenvector => {
+            "POINT" if self.head.vectors == Some(Vectors::Shapes) => {
                 return Err(self.lines.unsupported(format!(
                     "line {}: the eigenvectors are sorted by node (SORT2); write SORT1",
                     self.lines.number()
