@@ -33,10 +33,14 @@ mod result;
 mod rigid;
 mod rigid_fit;
 mod rigid_half;
+mod rod;
+mod scatter;
 mod skin;
+mod spline;
 mod summary;
 mod text;
 mod transfer;
+mod transfer_settings;
 mod units;
 
 pub use analytic::{AnalyticError, AnalyticMode, Component, Motion, PolynomialTerm};
@@ -55,8 +59,10 @@ pub use read::read_structure;
 pub use result::{Element, ModalResult, Mode, NamedSet, Node};
 pub use rigid::{Inertia, RIGID_KINDS, RigidBody, RigidBodyError, rigid_modes};
 pub use rigid_fit::{RecoveredBody, RigidFit, RigidSurvey, survey};
+pub use spline::Kernel;
 pub use summary::{ModeSummary, ModesSummary, SetSummary, modes_summary};
 pub use transfer::{
     ComponentReport, Transfer, TransferReport, build as build_transfer, transfer,
 };
+pub use transfer_settings::{Method, TransferSettings};
 pub use units::{Axes, AxesError, Units};

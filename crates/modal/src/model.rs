@@ -72,6 +72,8 @@ pub struct ElasticMode {
     pub generalised_mass: f64,
     /// Displacement a node, m per √kg m.
     pub shape: Vec<Vec3>,
+    /// Rotation a node, rad per √kg m, where the file has them.
+    pub rotation: Option<Vec<Vec3>>,
     /// Largest participation of a rigid translation, relative to √mass; zero
     /// for a mode orthogonal to rigid motion. `None` where the file is silent.
     pub participation: Option<f64>,
@@ -278,13 +280,15 @@ fn elastic_modes(
 fn normalised(mode: &Mode, number: usize, mass: Option<f64>) -> ElasticMode {
     let scale = 1.0 / mode.generalised_mass.sqrt();
     let participation = mode.participation.zip(mass);
+    let scaled = |values: &[Vec3]| values.iter().map(|u| u * scale).collect();
     ElasticMode {
         name: format!("elastic:{number}"),
         index: mode.index,
         frequency_hz: mode.frequency_hz,
         omega: TAU * mode.frequency_hz,
         generalised_mass: mode.generalised_mass,
-        shape: mode.displacement.iter().map(|u| u * scale).collect(),
+        shape: scaled(&mode.displacement),
+        rotation: mode.rotation.as_deref().map(scaled),
         participation: participation
             .map(|(factors, mass)| factors.amax() * scale / mass.sqrt()),
     }
