@@ -12,11 +12,14 @@
 //! Nothing here knows of the flow, of case files or of terminals.
 
 mod analytic;
+mod attach;
 mod axes_hint;
 mod block_matrix;
 mod closest;
 mod components;
 mod dat;
+mod edit;
+mod edit_setup;
 mod element;
 mod error;
 mod face;
@@ -36,6 +39,7 @@ mod rigid_half;
 mod rod;
 mod scatter;
 mod skin;
+mod skin_error;
 mod spline;
 mod summary;
 mod text;
@@ -46,6 +50,7 @@ mod units;
 pub use analytic::{AnalyticError, AnalyticMode, Component, Motion, PolynomialTerm};
 pub use block_matrix::BlockMatrix;
 pub use components::Mapping;
+pub use edit::{EditError, Edits, HingeChange, HingeRotation, PointMass};
 pub use element::ElementKind;
 pub use error::{ReadError, TransferError};
 pub use format::Format;
@@ -59,6 +64,7 @@ pub use read::read_structure;
 pub use result::{Element, ModalResult, Mode, NamedSet, Node};
 pub use rigid::{Inertia, RIGID_KINDS, RigidBody, RigidBodyError, rigid_modes};
 pub use rigid_fit::{RecoveredBody, RigidFit, RigidSurvey, survey};
+pub use skin_error::SkinError;
 pub use spline::Kernel;
 pub use summary::{ModeSummary, ModesSummary, SetSummary, modes_summary};
 pub use transfer::{

@@ -1,6 +1,8 @@
 //! The structure as the eigenproblem needs it: rigid-body properties, and
 //! elastic modes of unit generalised mass in SI units and mesh axes.
 
+use crate::edit::{EditError, Edits};
+use crate::edit_setup;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::half::{HalfError, Probe};
@@ -43,6 +45,8 @@ pub struct StructureSettings {
     pub modes: Option<[usize; 2]>,
     /// Mass properties that override those of the file.
     pub rigid_body: RigidBodySettings,
+    /// What is changed of it.
+    pub edits: Edits,
 }
 
 /// Mass properties of the whole aircraft as far as the case gives them.
@@ -113,6 +117,9 @@ pub enum StructureError {
     /// A half model that is none, or modes of the other kind.
     #[error(transparent)]
     Half(#[from] HalfError),
+    /// Changes that cannot be made.
+    #[error(transparent)]
+    Edit(#[from] EditError),
     /// A choice of modes the file does not hold.
     #[error(
         "structure.modes = [{first}, {last}] where the file holds the elastic modes 1 to {count}"
@@ -153,9 +160,18 @@ pub fn load(settings: &StructureSettings) -> Result<StructuralModel, StructureEr
     let mut notes = result.notes.clone();
     notes.extend(survey.notes.iter().cloned());
     notes.extend(survey.recovered.as_ref().and_then(asymmetry));
-    let rigid_body = rigid_body(&settings.rigid_body, &result, &survey, &mut notes)?;
+    let mut rigid_body = rigid_body(&settings.rigid_body, &result, &survey, &mut notes)?;
     participations(&mut result, settings);
-    let elastic = elastic_modes(&result, &survey, rigid_body.as_ref());
+    let mut elastic = elastic_modes(&result, &survey, rigid_body.as_ref());
+    if !settings.edits.keeps_shapes() {
+        let structure = edit_setup::Structure {
+            result: &result,
+            survey: &survey,
+            settings,
+        };
+        (elastic, rigid_body) = structure.edited(&elastic, rigid_body, &mut notes)?;
+    }
+    edit_setup::override_frequencies(&mut elastic, &settings.edits.frequencies, &mut notes)?;
     let mut elastic = subset(elastic, settings.modes)?;
     if let Some(probe) = probe.filter(|_| settings.symmetry.is_half()) {
         let (wanted, leave_out) = (settings.symmetry, settings.leave_out_other);

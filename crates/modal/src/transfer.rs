@@ -17,6 +17,7 @@ use crate::result::ModalResult;
 use crate::rod::Rod;
 use crate::scatter::{Scatter, Wanted, apart};
 use crate::skin::{self, Skin, SurfaceSearch};
+use crate::skin_error::{SkinError, WayBack};
 use crate::transfer_settings::{Method, TransferSettings};
 use fladder_mesh::{Frame, SurfaceMode, Symmetry, TriMesh, Vec3};
 use nalgebra::Matrix3;
@@ -51,6 +52,16 @@ pub struct Transfer {
     pub matrix: BlockMatrix,
     /// How well the two fit.
     pub report: TransferReport,
+    /// Judges single modes.
+    way_back: WayBack,
+}
+
+impl Transfer {
+    /// Largest difference between a displacement of the surface and that of the
+    /// structure's nodes at the surface; `None` where there are no such nodes.
+    pub fn skin_error(&self, on_surface: &[Vec3], on_structure: &[Vec3]) -> Option<SkinError> {
+        self.way_back.error(on_surface, on_structure)
+    }
 }
 
 /// How structure and surface fit together.
@@ -71,6 +82,9 @@ pub struct TransferReport {
     pub components: Vec<ComponentReport>,
     /// Elements that carry no surface, by set.
     pub left_out: Vec<String>,
+    /// Largest error of each mode against the structure's skin, in their order;
+    /// empty before modes are carried.
+    pub errors: Vec<Option<SkinError>>,
     /// What looks odd.
     pub notes: Vec<String>,
 }
@@ -106,21 +120,27 @@ pub fn transfer(
     mesh: &TriMesh,
     settings: impl Into<TransferSettings>,
 ) -> Result<(Vec<SurfaceMode>, TransferReport), TransferError> {
-    let Transfer { matrix, mut report } = build(&model.result, mesh, settings)?;
-    let (modes, removed): (Vec<SurfaceMode>, Vec<f64>) = model
+    let transfer = build(&model.result, mesh, settings)?;
+    let (modes, judged): (Vec<SurfaceMode>, Vec<(f64, _)>) = model
         .elastic
         .par_iter()
-        .map(|mode| {
-            let mut displacement = matrix.displacement(&nodal(mode, &matrix));
+        .map(|shape| {
+            let mut displacement = transfer
+                .matrix
+                .displacement(&nodal(shape, &transfer.matrix));
             let removed = hold_in_plane(&mut displacement, mesh, model.symmetry);
             let mode = SurfaceMode {
-                name: mode.name.clone(),
+                name: shape.name.clone(),
                 frame: Frame::Inertial,
                 displacement,
             };
-            (mode, removed)
+            let error = transfer.skin_error(&mode.displacement, &shape.shape);
+            (mode, (removed, error))
         })
         .unzip();
+    let (removed, errors): (Vec<f64>, Vec<_>) = judged.into_iter().unzip();
+    let mut report = transfer.report;
+    report.errors = errors;
     let worst = (0..modes.len()).max_by(|&a, &b| removed[a].total_cmp(&removed[b]));
     if let Some(worst) = worst.filter(|&worst| removed[worst] > SAID_IN_PLANE) {
         report.notes.push(format!(
@@ -221,7 +241,8 @@ pub fn build(
         }
         other => other?,
     };
-    let size_ratio = size_ratio(carrying_nodes(&plan, &skin), &positions, mesh)?;
+    let nodes = carrying_nodes(&plan, &skin);
+    let size_ratio = size_ratio(nodes.iter().flatten(), &positions, mesh)?;
     let carriers = Carriers::new(&plan, &skin, &positions, result)?;
     let carried = carriers.carry(&plan, &positions, mesh);
     let mut report = report(&plan, &skin, &carried, mesh);
@@ -239,15 +260,25 @@ pub fn build(
     Ok(Transfer {
         matrix: BlockMatrix::from_rows(columns, rows),
         report,
+        way_back: WayBack::new(&plan, &nodes, &positions, mesh),
     })
 }
 
-fn carrying_nodes<'a>(plan: &'a Plan, skin: &'a Skin) -> impl Iterator<Item = &'a u32> {
-    let of_faces = |f: &'a u32| &skin.faces[*f as usize].nodes;
-    plan.targets.iter().flat_map(move |target| match target {
-        Target::Faces(faces) => faces.iter().flat_map(of_faces).collect::<Vec<_>>(),
-        Target::Nodes(nodes, _) => nodes.iter().collect(),
-    })
+/// Nodes of each target, ascending.
+fn carrying_nodes(plan: &Plan, skin: &Skin) -> Vec<Vec<u32>> {
+    let of_target = |target: &Target| {
+        let mut nodes: Vec<u32> = match target {
+            Target::Faces(faces) => {
+                let of_face = |f: &u32| skin.faces[*f as usize].nodes.iter().copied();
+                faces.iter().flat_map(of_face).collect()
+            }
+            Target::Nodes(nodes, _) => nodes.clone(),
+        };
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    };
+    plan.targets.iter().map(of_target).collect()
 }
 
 fn size_ratio<'a>(
