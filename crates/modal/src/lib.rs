@@ -15,6 +15,7 @@ mod analytic;
 mod attach;
 mod axes_hint;
 mod block_matrix;
+mod cells;
 mod closest;
 mod components;
 mod dat;
@@ -30,6 +31,7 @@ mod inp;
 mod model;
 mod neutral;
 mod offset;
+mod quality;
 mod raw;
 mod read;
 mod result;
@@ -49,6 +51,7 @@ mod units;
 
 pub use analytic::{AnalyticError, AnalyticMode, Component, Motion, PolynomialTerm};
 pub use block_matrix::BlockMatrix;
+pub use cells::Cells;
 pub use components::Mapping;
 pub use edit::{EditError, Edits, HingeChange, HingeRotation, PointMass};
 pub use element::ElementKind;
@@ -66,7 +69,7 @@ pub use rigid::{Inertia, RIGID_KINDS, RigidBody, RigidBodyError, rigid_modes};
 pub use rigid_fit::{RecoveredBody, RigidFit, RigidSurvey, survey};
 pub use skin_error::SkinError;
 pub use spline::Kernel;
-pub use summary::{ModeSummary, ModesSummary, SetSummary, modes_summary};
+pub use summary::{ModeSummary, ModesSummary, SetSummary, modes_summary, summary_of};
 pub use transfer::{
     ComponentReport, Transfer, TransferReport, build as build_transfer, transfer,
 };

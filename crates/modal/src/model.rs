@@ -6,6 +6,7 @@ use crate::edit_setup;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::half::{HalfError, Probe};
+use crate::quality;
 use crate::read::read_structure;
 use crate::result::{ModalResult, Mode};
 use crate::rigid::{Inertia, RigidBody, RigidBodyError};
@@ -74,6 +75,8 @@ pub struct ElasticMode {
     /// Generalised mass before normalisation, kg: that in the file, twice that
     /// of a half model.
     pub generalised_mass: f64,
+    /// Generalised stiffness before normalisation.
+    pub generalised_stiffness: f64,
     /// Displacement a node, m per √kg m.
     pub shape: Vec<Vec3>,
     /// Rotation a node, rad per √kg m, where the file has them.
@@ -160,6 +163,7 @@ pub fn load(settings: &StructureSettings) -> Result<StructuralModel, StructureEr
     let mut notes = result.notes.clone();
     notes.extend(survey.notes.iter().cloned());
     notes.extend(survey.recovered.as_ref().and_then(asymmetry));
+    notes.extend(quality::remarks(&result, &survey));
     let mut rigid_body = rigid_body(&settings.rigid_body, &result, &survey, &mut notes)?;
     participations(&mut result, settings);
     let mut elastic = elastic_modes(&result, &survey, rigid_body.as_ref());
@@ -303,6 +307,7 @@ fn normalised(mode: &Mode, number: usize, mass: Option<f64>) -> ElasticMode {
         frequency_hz: mode.frequency_hz,
         omega: TAU * mode.frequency_hz,
         generalised_mass: mode.generalised_mass,
+        generalised_stiffness: mode.generalised_stiffness,
         shape: scaled(&mode.displacement),
         rotation: mode.rotation.as_deref().map(scaled),
         participation: participation

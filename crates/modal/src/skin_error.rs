@@ -1,8 +1,8 @@
 //! How well the surface moves as the skin of the structure does.
 //!
 //! The way back: every node that carries the surface is carried in turn by the
-//! nearest triangle of its own part of the surface, with the same offset by
-//! rotation ([`crate::offset`]). What a mode loses on the way there and back,
+//! nearest triangle of its own part of the surface (of the nearest of them, where
+//! parts meet), with the same offset by rotation ([`crate::offset`]). What a mode loses on the way there and back,
 //! relative to its largest displacement, holds the faceting of both meshes,
 //! wrong carriers and missing skins.
 
@@ -14,6 +14,7 @@ use crate::offset;
 use fladder_mesh::{TriMesh, Vec3};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// The way back from surface to structure.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +34,12 @@ pub struct SkinError {
     pub node: u32,
 }
 
-/// One node carried back.
-type Row = (u32, Vec<(u32, Matrix3<f64>)>);
+/// One node carried back, and its distance from the triangle.
+struct Row {
+    node: u32,
+    distance: f64,
+    blocks: Vec<(u32, Matrix3<f64>)>,
+}
 
 impl WayBack {
     /// `nodes` holds those of each target of the plan.
@@ -44,15 +49,21 @@ impl WayBack {
         positions: &[Vec3],
         mesh: &TriMesh,
     ) -> Self {
-        let rows: Vec<Row> = nodes
-            .iter()
-            .enumerate()
-            .flat_map(|(target, nodes)| {
-                let search = FaceSearch::new(triangles(plan, target, mesh), &mesh.vertices);
-                search.map_or_else(Vec::new, |search| carried(&search, nodes, positions, mesh))
-            })
-            .collect();
-        let (nodes, blocks) = rows.into_iter().unzip();
+        let mut nearest: BTreeMap<u32, Row> = BTreeMap::new();
+        for (target, nodes) in nodes.iter().enumerate() {
+            let Some(search) = FaceSearch::new(triangles(plan, target, mesh), &mesh.vertices)
+            else {
+                continue;
+            };
+            for row in carried(&search, nodes, positions, mesh) {
+                let known = nearest.get(&row.node);
+                if known.is_none_or(|known| row.distance < known.distance) {
+                    nearest.insert(row.node, row);
+                }
+            }
+        }
+        let rows = nearest.into_values().map(|row| (row.node, row.blocks));
+        let (nodes, blocks) = rows.unzip();
         Self {
             nodes,
             matrix: BlockMatrix::from_rows(mesh.vertices.len(), blocks),
@@ -104,8 +115,11 @@ fn carried(search: &FaceSearch, nodes: &[u32], positions: &[Vec3], mesh: &TriMes
             let face = &search.faces()[hit.face as usize];
             let [a, b, c] = mesh.corners(face.element as usize);
             let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-            (hit.distance <= longest)
-                .then(|| (*node, offset::blocks(face, hit.at, point, &mesh.vertices)))
+            (hit.distance <= longest).then(|| Row {
+                node: *node,
+                distance: hit.distance,
+                blocks: offset::blocks(face, hit.at, point, &mesh.vertices),
+            })
         })
         .collect()
 }

@@ -335,6 +335,31 @@ fn damping(
             ));
         }
     }
+    for over in &given.overrides {
+        let Some(coefficient) = over.damping else {
+            continue;
+        };
+        let first = given.modes.map_or(1, |[first, _]| first);
+        let place = over
+            .mode
+            .checked_sub(first)
+            .filter(|place| *place < elastic);
+        let Some(place) = place else {
+            return Err(Failure::input(
+                format!(
+                    "damping is given for elastic mode {}, which is not used",
+                    over.mode
+                ),
+                file.places.of("structure.override"),
+                "it would have no effect",
+                format!(
+                    "the elastic modes in use are {first} to {}",
+                    first + elastic - 1
+                ),
+            ));
+        };
+        values[rigid + place] = coefficient;
+    }
     Ok(match given.damping_model {
         DampingModel::Viscous => stability::DampingModel::Viscous(values),
         DampingModel::Hysteretic => stability::DampingModel::Hysteretic(values),
