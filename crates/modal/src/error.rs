@@ -109,7 +109,8 @@ pub enum TransferError {
     /// Nothing that has faces.
     #[error(
         "the structure has no shells and no solids among its {elements} elements: nothing there \
-         can carry a surface; name a geometry file if the result holds nodes alone"
+         can carry a surface; name a geometry file if the result holds nodes alone, or choose a \
+         spline through the nodes with structure.transfer = \"polyharmonic\""
     )]
     NoSkin {
         /// Elements in the structure.
@@ -152,7 +153,7 @@ pub enum TransferError {
     },
     /// A set of `structure.components` that the structure lacks.
     #[error(
-        "structure.components.{group} names {name:?}, but the structure has the element sets \
+        "structure.components.{group} names {name:?}, but the structure has the sets \
          {known:?}"
     )]
     NoSet {
@@ -161,6 +162,26 @@ pub enum TransferError {
         /// Group it is given for.
         group: String,
         /// Element sets of the structure.
+        known: Vec<String>,
+    },
+    /// Points that leave a rotation open.
+    #[error(
+        "{group}: its {points} points of the structure lie on one line and have no rotations, so \
+         that nothing says how the surface turns about the line; name sets with points beside it, \
+         or write rotations with the modes"
+    )]
+    OnOneLine {
+        /// Group of the mesh.
+        group: String,
+        /// Points found for it.
+        points: usize,
+    },
+    /// A method for a group that the mesh lacks.
+    #[error("structure.transfer names {name:?}, but the mesh has the groups {known:?}")]
+    NoSuchGroup {
+        /// Name given.
+        name: String,
+        /// Groups of the mesh.
         known: Vec<String>,
     },
     /// Sets without shells or solids.

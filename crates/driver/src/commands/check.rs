@@ -142,7 +142,7 @@ fn look_further(
         Some(file) => {
             let aircraft = Aircraft::on(file, surface.clone())?;
             report::structure(console, &aircraft.structure);
-            report::transfer(console, aircraft.transfer.as_ref());
+            report::transfer(console, &aircraft.structure, aircraft.transfer.as_ref());
             findings.modes = aircraft.mode_names();
             let problem = own_forces::problem(file, &aircraft);
             let mut plan = fladder_bem::plan(&problem)

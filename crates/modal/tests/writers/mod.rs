@@ -9,7 +9,7 @@ mod matrices;
 mod nastran;
 mod universal;
 
-pub(crate) use binary::{Tables, frd_binary, op2};
+pub(crate) use binary::{frd_binary, op2};
 pub(crate) use gmsh::msh;
 pub(crate) use matrices::{Form, op4};
 pub(crate) use nastran::{Fields, bdf, f06, pch};
