@@ -181,7 +181,7 @@ fn a_control_is_the_rotation_of_its_group() {
     let axis = "modes.control.0.hinge.axis=[0.0,0.0,0.0]";
     let text = place.refused(&["check", "control.toml", "--set", axis]);
     assert!(
-        text.contains("control.toml:") && text.contains("no length"),
+        text.contains("where: --set modes.control.0.hinge.axis") && text.contains("no length"),
         "{text}"
     );
 }

@@ -13,8 +13,11 @@ mod writers;
 use common::{file, mode};
 use fladder_mesh::Vec3;
 use fladder_modal::{ModalResult, Node, read_structure};
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use proptest::prelude::*;
 use proptest::sample::Index;
+use std::io::Write;
 use writers::{Fields, WAYS, Way, bdf, rotation};
 
 fn vector() -> impl Strategy<Value = Vec3> {
@@ -56,6 +59,12 @@ fn geometry(way: Way, contents: &ModalResult, folder: &str) -> Option<std::path:
         .then(|| file(folder, "nodes.bdf", text))
 }
 
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
 fn close(a: &Vec3, b: &Vec3, rounding: f64) -> bool {
     // Single precision and printed digits end somewhere below.
     let tiny = 1e-37;
@@ -68,8 +77,14 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
 
     #[test]
-    fn random_contents_are_read_as_written(way in way(), written in contents()) {
-        let path = file("random_formats", "contents", way.write(&written));
+    fn random_contents_are_read_as_written(
+        way in way(),
+        written in contents(),
+        zipped in any::<bool>(),
+    ) {
+        let bytes = way.write(&written);
+        let bytes = if zipped { gzip(&bytes) } else { bytes };
+        let path = file("random_formats", "contents", bytes);
         let geometry = geometry(way, &written, "random_formats");
         let read = read_structure(&path, geometry.as_deref(), None).unwrap();
         prop_assert_eq!(read.nodes.len(), written.nodes.len());
@@ -159,7 +174,7 @@ proptest! {
         let path = file("cut_formats", "contents", &bytes[..kept]);
         let geometry = geometry(way, &written, "cut_formats");
         let read = read_structure(&path, geometry.as_deref(), None);
-        let has_end = matches!(way, Way::Op2 { .. } | Way::FrdBinary);
+        let has_end = way.has_end();
         let blank_end = bytes[kept..].iter().all(u8::is_ascii_whitespace);
         if let Ok(read) = read {
             prop_assert!(!has_end || blank_end, "{way:?} cut at {kept} of {}", bytes.len());

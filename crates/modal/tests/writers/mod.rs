@@ -39,10 +39,12 @@ pub(crate) enum Way {
     Universal { results: bool },
     Gmsh { version_4: bool, binary: bool },
     FrdBinary,
+    FrdText,
+    Neutral,
 }
 
 /// All of them.
-pub(crate) const WAYS: [Way; 18] = [
+pub(crate) const WAYS: [Way; 21] = [
     Way::Punch,
     Way::Printed,
     Way::Op2 {
@@ -81,7 +83,13 @@ pub(crate) const WAYS: [Way; 18] = [
         version_4: false,
         binary: true,
     },
+    Way::Gmsh {
+        version_4: true,
+        binary: false,
+    },
     Way::FrdBinary,
+    Way::FrdText,
+    Way::Neutral,
 ];
 
 impl Way {
@@ -94,6 +102,12 @@ impl Way {
             Self::Universal { results } => unv(contents, results).into_bytes(),
             Self::Gmsh { version_4, binary } => msh(contents, version_4, binary),
             Self::FrdBinary => frd_binary(contents),
+            Self::FrdText => super::common::frd(contents).into_bytes(),
+            Self::Neutral => {
+                let mut bytes = Vec::new();
+                fladder_modal::write_neutral(contents, &mut bytes).unwrap();
+                bytes
+            }
         }
     }
 
@@ -102,25 +116,41 @@ impl Way {
         matches!(self, Self::Punch | Self::Printed | Self::Op4(_))
     }
 
+    /// A file that says where it ends.
+    pub(crate) fn has_end(self) -> bool {
+        matches!(
+            self,
+            Self::Op2 { .. } | Self::FrdBinary | Self::FrdText | Self::Neutral
+        )
+    }
+
     /// Rounding of a value relative to itself.
     pub(crate) fn rounding(self) -> f64 {
         match self {
-            Self::Op2 { wide: true, .. } | Self::Gmsh { .. } => 0.0,
+            Self::Op2 { wide: true, .. } | Self::Gmsh { .. } | Self::Neutral => 0.0,
             Self::Op4(_) => 1e-15,
             Self::Op2 { wide: false, .. } | Self::FrdBinary => 6e-8,
             Self::Punch | Self::Printed => 5.1e-7,
-            Self::Universal { .. } => 5.1e-6,
+            Self::Universal { .. } | Self::FrdText => 5.1e-6,
         }
     }
 
     pub(crate) fn has_rotations(self) -> bool {
-        !matches!(self, Self::Gmsh { .. } | Self::FrdBinary)
+        !matches!(
+            self,
+            Self::Gmsh { .. } | Self::FrdBinary | Self::FrdText | Self::Neutral
+        )
     }
 
     pub(crate) fn has_masses(self) -> bool {
         matches!(
             self,
-            Self::Printed | Self::Op2 { .. } | Self::Universal { .. } | Self::FrdBinary
+            Self::Printed
+                | Self::Op2 { .. }
+                | Self::Universal { .. }
+                | Self::FrdBinary
+                | Self::FrdText
+                | Self::Neutral
         )
     }
 }
