@@ -123,6 +123,7 @@ fn keys_change_hinges_masses_and_frequencies() {
             "structure.hinge=[{name=\"r\",stiffness_change=1.0}]",
             "control, base",
         ),
+        ("structure.transfr=faces", "`structure.transfer`"),
         ("structure.transfer={wing=\"faces\"}", "wing_r"),
     ] {
         let text = place.refused(&["modes", case, "--set", set]);

@@ -155,7 +155,10 @@ impl Assembly {
         table: ModeTable,
     ) -> Result<ModalResult, ReadError> {
         if table.modes.is_empty() {
-            return Err(self.mismatch("it holds no mode"));
+            return Err(self.mismatch(
+                "it holds no mode; write the shapes of a modal analysis into it, or give it as \
+                 structure.geometry (--geometry) beside the file that has them",
+            ));
         }
         if own.nodes.is_empty() && given.is_none() {
             return Err(self.mismatch(

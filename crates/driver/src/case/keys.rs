@@ -38,6 +38,7 @@ pub(crate) const KEYS: &[&str] = &[
     "structure.damping",
     "structure.damping_model",
     "structure.components.*",
+    "structure.transfer",
     "structure.transfer.*",
     "structure.transfer_limit",
     "structure.added_mass[].name",

@@ -66,6 +66,18 @@ pub struct Structure {
     pub matrices: Option<Matrices>,
 }
 
+impl Structure {
+    /// Whether the modes are not those of the file.
+    pub(crate) fn is_changed(&self) -> bool {
+        let masses_or_hinges = !(self.added_mass.is_empty() && self.hinge.is_empty());
+        masses_or_hinges
+            || self
+                .overrides
+                .iter()
+                .any(|mode| mode.frequency_hz.is_some())
+    }
+}
+
 fn yes() -> bool {
     true
 }

@@ -29,8 +29,8 @@ pub(crate) fn gaf(
     }
     let aircraft = Aircraft::read(&file)?;
     report::surface(console, &aircraft.surface);
-    report::structure(console, &aircraft.structure);
-    report::transfer(console, &aircraft.structure, aircraft.transfer.as_ref());
+    report::structure(console, &aircraft.structure, aircraft.transfer.as_ref());
+    report::transfer(console, aircraft.transfer.as_ref());
     let own = own_forces::obtain(&file, &aircraft, &session.open_cache(&file), console)?;
     report::own_forces(console, &file, &aircraft, &own);
     report::wake_jumps(console, &own.stored.solution.steady);

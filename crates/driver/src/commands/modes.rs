@@ -8,7 +8,8 @@ use crate::chain::forces;
 use crate::chain::structure::StructureData;
 use crate::failure::Failure;
 use crate::report::{self, Shown};
-use fladder_modal::{ModesSummary, ReadError, read_structure, summary_of};
+use crate::terminal::Console;
+use fladder_modal::{ModesSummary, ReadError, TransferReport, read_structure, summary_of};
 use std::path::Path;
 
 /// What is asked for besides the table.
@@ -61,18 +62,25 @@ fn of_case(session: &Session, path: &Path, wanted: &Wanted<'_>) -> Result<(), Fa
     let file = session.case(path)?;
     let console = &session.console;
     let summary = contents(&file)?;
-    report::modes_summary(console, &summary);
     if forces::are_given(&file) || file.case.mesh.is_none() {
         let structure = StructureData::read(&file)?;
-        report::structure(console, &structure);
+        table(console, &file, (&summary, &structure), None);
         if let (Some(folder), Some(model)) = (wanted.vtu, &structure.model) {
             write_structure(session, folder, &Shown::Model(model))?;
         }
         return write_json(session, wanted, &summary);
     }
-    let aircraft = Aircraft::read(&file)?;
-    report::structure(console, &aircraft.structure);
-    report::transfer(console, &aircraft.structure, aircraft.transfer.as_ref());
+    let aircraft = match Aircraft::read(&file) {
+        Ok(aircraft) => aircraft,
+        Err(failure) => {
+            // What is in the file may explain why it does not fit.
+            report::modes_summary(console, &summary);
+            return Err(failure);
+        }
+    };
+    let carried = aircraft.transfer.as_ref();
+    table(console, &file, (&summary, &aircraft.structure), carried);
+    report::transfer(console, carried);
     if let Some(folder) = wanted.vtu {
         if let Some(model) = &aircraft.structure.model {
             write_structure(session, folder, &Shown::Model(model))?;
@@ -85,6 +93,23 @@ fn of_case(session: &Session, path: &Path, wanted: &Wanted<'_>) -> Result<(), Fa
         }
     }
     write_json(session, wanted, &summary)
+}
+
+/// All modes in one table; changed ones, which are no longer those of the file,
+/// in one of their own.
+fn table(
+    console: &Console,
+    file: &CaseFile,
+    (summary, data): (&ModesSummary, &StructureData),
+    carried: Option<&TransferReport>,
+) {
+    let given = file.case.structure.as_ref();
+    if given.is_some_and(crate::case::Structure::is_changed) {
+        report::modes_summary(console, summary);
+        report::structure(console, data, carried);
+    } else {
+        report::modes_of_case(console, summary, data, carried);
+    }
 }
 
 /// Contents of the result file that a case names.
@@ -135,10 +160,27 @@ fn not_drawn(folder: &Path, error: &std::io::Error) -> Failure {
 }
 
 fn unread(error: &ReadError, file: &Path) -> Failure {
+    let remedy = match error {
+        ReadError::Io { .. } => "correct the path, or make the file readable",
+        ReadError::UnknownFormat { .. } => {
+            "give a file of these formats; results of other programs go into the neutral JSON of \
+             docs/modal-json.md"
+        }
+        ReadError::UnknownGeometry { .. } => {
+            "give the input of the finite-element program as the geometry"
+        }
+        ReadError::Truncated { .. } | ReadError::Damaged { .. } | ReadError::Count { .. } => {
+            "write the file again with the finite-element program, and copy it whole"
+        }
+        ReadError::Syntax { .. } => {
+            "correct this line, or write the file again with the finite-element program"
+        }
+        _ => "give files of one and the same run, with real modes and the nodes they are of",
+    };
     Failure::input(
         error.to_string(),
         file.display().to_string(),
         "modes that are wrong or incomplete give wrong roots without any sign of it",
-        "write the file again with the finite-element program, and copy it whole",
+        remedy,
     )
 }

@@ -18,6 +18,6 @@ pub(crate) use forces::{own_forces, sample, steady_forces, wake_jumps};
 pub(crate) use mode_pictures::{Shown, mode_pictures, structure_picture, surface_picture};
 pub(crate) use pictures::{EdgeEnd, ends, flow_pictures, pictures};
 pub(crate) use roots::{conditions, roots};
-pub(crate) use structure::{modes_summary, structure, transfer};
+pub(crate) use structure::{modes_of_case, modes_summary, structure, transfer};
 pub(crate) use surface::surface;
 pub(crate) use wake::wake;
