@@ -76,7 +76,13 @@ fn modes_that_the_surface_does_not_follow_are_refused_unless_told() {
     let case = case.to_str().unwrap();
     let limit = "structure.transfer_limit=0.1";
     let text = place.refused(&["check", case, "--set", limit]);
-    for words in ["elastic:18", "18.4 %", "node", "structure.transfer_limit"] {
+    for words in [
+        "elastic:18",
+        "18.4 %",
+        "above that: elastic:18 (18.4 %)",
+        "node",
+        "structure.transfer_limit",
+    ] {
         assert!(text.contains(words), "{words} in\n{text}");
     }
     place

@@ -57,6 +57,7 @@ mod transfer;
 mod transfer_settings;
 mod units;
 mod unv;
+mod unv_binary;
 mod unv_modes;
 
 pub use analytic::{AnalyticError, AnalyticMode, Component, Motion, PolynomialTerm};

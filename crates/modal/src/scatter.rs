@@ -14,6 +14,7 @@ use crate::error::TransferError;
 use crate::spline::{Kernel, Patch};
 use fladder_mesh::Vec3;
 use nalgebra::Matrix3;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Up to so many points share one spline.
@@ -72,55 +73,74 @@ impl Scatter {
     /// Lays the patches; false where one cannot tell rigid motions apart.
     fn cover(&mut self, kernel: Kernel) -> bool {
         let count = self.positions.len();
-        let everything: Vec<u32> = (0..count as u32).collect();
-        self.patches.clear();
-        if count <= WHOLE {
-            return self.lay(self.positions.iter().sum::<Vec3>(), everything, kernel);
-        }
-        let mut nearest = vec![f64::INFINITY; count];
-        let mut next = 0;
-        for _ in 0..count / SPACING {
-            let middle = self.positions[next];
-            let mut order = everything.clone();
-            let square = |k: &u32| (self.positions[*k as usize] - middle).norm_squared();
-            order.sort_by(|a, b| square(a).total_cmp(&square(b)).then(a.cmp(b)));
-            let mut size = PATCH;
-            while !self.lay(middle, order[..size.min(count)].to_vec(), kernel) {
-                if size >= (4 * PATCH).min(count) {
-                    return false;
-                }
-                size *= 2;
-            }
-            for (k, distance) in nearest.iter_mut().enumerate() {
-                *distance = distance.min((self.positions[k] - middle).norm());
-            }
-            next = (0..count)
-                .max_by(|a, b| nearest[*a].total_cmp(&nearest[*b]).then(b.cmp(a)))
-                .unwrap_or(0);
-        }
-        true
+        let laid: Option<Vec<Laid>> = if count <= WHOLE {
+            let middle = self.positions.iter().sum::<Vec3>();
+            let everything = (0..count as u32).collect();
+            self.lay(middle, everything, kernel).map(|laid| vec![laid])
+        } else {
+            self.middles()
+                .into_par_iter()
+                .map(|middle| self.lay_about(middle, kernel))
+                .collect()
+        };
+        self.patches = laid.unwrap_or_default();
+        !self.patches.is_empty()
     }
 
-    fn lay(&mut self, middle: Vec3, points: Vec<u32>, kernel: Kernel) -> bool {
+    /// Points to lay patches about, each the farthest from all before it.
+    fn middles(&self) -> Vec<Vec3> {
+        let count = self.positions.len();
+        let mut nearest = vec![f64::INFINITY; count];
+        let mut next = 0;
+        (0..count / SPACING)
+            .map(|_| {
+                let middle = self.positions[next];
+                for (distance, position) in nearest.iter_mut().zip(&self.positions) {
+                    *distance = distance.min((position - middle).norm_squared());
+                }
+                next = (0..count)
+                    .max_by(|a, b| nearest[*a].total_cmp(&nearest[*b]).then(b.cmp(a)))
+                    .unwrap_or(0);
+                middle
+            })
+            .collect()
+    }
+
+    /// The patch of the nearest points, of more of them where they lie on a line.
+    fn lay_about(&self, middle: Vec3, kernel: Kernel) -> Option<Laid> {
+        let most = (4 * PATCH).min(self.positions.len());
+        let squares = self.positions.iter().zip(0..);
+        let near: Vec<(u32, f64)> = squares
+            .map(|(position, k)| (k, (position - middle).norm_squared()))
+            .collect();
+        let near = nearest_first(near, most);
+        let mut size = PATCH;
+        loop {
+            let points = near.iter().take(size).map(|(k, _)| *k).collect();
+            let laid = self.lay(middle, points, kernel);
+            if laid.is_some() || size >= most {
+                return laid;
+            }
+            size *= 2;
+        }
+    }
+
+    fn lay(&self, middle: Vec3, points: Vec<u32>, kernel: Kernel) -> Option<Laid> {
         let positions = points.iter().map(|k| self.positions[*k as usize]).collect();
-        let Ok(patch) = Patch::new(positions, kernel) else {
-            return false;
-        };
-        self.patches.push(Laid {
+        Some(Laid {
             middle,
+            patch: Patch::new(positions, kernel).ok()?,
             points,
-            patch,
-        });
-        true
+        })
     }
 
     /// Distance to the nearest node.
     pub(crate) fn distance(&self, point: &Vec3) -> f64 {
-        let distances = self
+        let squares = self
             .positions
             .iter()
-            .map(|position| (position - point).norm());
-        distances.fold(f64::INFINITY, f64::min)
+            .map(|position| (position - point).norm_squared());
+        squares.fold(f64::INFINITY, f64::min).sqrt()
     }
 
     /// The blocks that give the displacement of a point.
@@ -136,7 +156,7 @@ impl Scatter {
     }
 
     fn weights(&self, point: &Vec3) -> Vec<(usize, f64)> {
-        let mut near: Vec<(usize, f64)> = self
+        let near: Vec<(usize, f64)> = self
             .patches
             .iter()
             .enumerate()
@@ -145,7 +165,7 @@ impl Scatter {
         if near.len() <= 1 {
             return near.into_iter().map(|(k, _)| (k, 1.0)).collect();
         }
-        near.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        let mut near = nearest_first(near, BLENDED + 1);
         let reach = near.get(BLENDED).unwrap_or(&near[near.len() - 1]).1;
         near.truncate(BLENDED);
         if near[0].1 <= SAME * reach {
@@ -163,6 +183,17 @@ impl Scatter {
             vec![(near[0].0, 1.0)]
         }
     }
+}
+
+/// The so many nearest in order of distance, of equal ones by number.
+fn nearest_first<K: Ord>(mut near: Vec<(K, f64)>, count: usize) -> Vec<(K, f64)> {
+    let order = |a: &(K, f64), b: &(K, f64)| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0));
+    if count < near.len() {
+        near.select_nth_unstable_by(count, order);
+        near.truncate(count);
+    }
+    near.sort_unstable_by(order);
+    near
 }
 
 /// The nodes without those that lie where an earlier one does.

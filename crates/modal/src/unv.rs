@@ -13,7 +13,7 @@ use crate::element::ElementKind;
 use crate::error::ReadError;
 use crate::raw::{Geometry, ModeBuilder, ModeTable, RawElement};
 use crate::text::{Lines, field, real};
-use crate::unv_modes;
+use crate::{unv_binary, unv_modes};
 use fladder_mesh::Vec3;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -81,8 +81,13 @@ impl Reader {
             "164" => self.units(),
             "151" => self.skip(),
             other => {
-                self.passed_over.insert(other.chars().take(10).collect());
-                self.skip()
+                let word = other.split_ascii_whitespace().next().unwrap_or("");
+                self.passed_over.insert(word.chars().take(10).collect());
+                if unv_binary::is_binary(other) {
+                    unv_binary::skip(self, other)
+                } else {
+                    self.skip()
+                }
             }
         }
     }

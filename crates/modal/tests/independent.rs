@@ -311,6 +311,8 @@ fn pyuff_writes_nodes_and_modes() {
         assert_eq!(plate.format, Format::Universal);
         // Six digits of numbers up to four.
         check_plate(&plate, 5e-6);
+        let passed_over = plate.notes.iter().any(|note| note.contains("58b"));
+        assert_eq!(passed_over, name == "plate_55.unv", "{:?}", plate.notes);
         let masses: Vec<f64> = plate.modes.iter().map(|m| m.generalised_mass).collect();
         assert_eq!(masses, [1.0, 2.5, 0.125]);
     }

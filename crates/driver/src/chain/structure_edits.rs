@@ -98,6 +98,12 @@ pub(super) fn within_limit(
         .as_ref()
         .map_or(f64::INFINITY, |given| given.transfer_limit);
     let judged = model.elastic.iter().zip(&report.errors);
+    let above: Vec<String> = judged
+        .clone()
+        .filter_map(|(mode, error)| Some((mode, (*error)?.relative)))
+        .filter(|(_, relative)| *relative > limit)
+        .map(|(mode, relative)| format!("{} ({:.1} %)", mode.name, 100.0 * relative))
+        .collect();
     let worst = judged
         .filter_map(|(mode, error)| Some((mode, (*error)?)))
         .max_by(|a, b| a.1.relative.total_cmp(&b.1.relative));
@@ -109,10 +115,11 @@ pub(super) fn within_limit(
     Err(Failure::input(
         format!(
             "{} on the surface differs from the structure's skin by {:.1} % of its largest \
-             displacement, {:.1} % are allowed",
+             displacement, {:.1} % are allowed; above that: {}",
             mode.name,
             100.0 * error.relative,
-            100.0 * limit
+            100.0 * limit,
+            above.join(", ")
         ),
         format!(
             "{}, node {} at ({x:.4}, {y:.4}, {z:.4}) m",

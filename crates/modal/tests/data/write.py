@@ -201,6 +201,23 @@ def gmsh():
     return {"points": points.tolist(), "cells": cells.tolist(), "shapes": [s.tolist() for s in shapes]}
 
 
+def response():
+    """A measured response in binary, whose bytes hold a line that ends datasets."""
+    end = np.frombuffer(b"\n    -1\n", "<f8")[0]
+    units = {
+        f"{axis}_{what}": 0
+        for axis in ["abscissa", "ordinate", "orddenom", "z_axis"]
+        for what in ["spec_data_type", "len_unit_exp", "force_unit_exp", "temp_unit_exp"]
+    }
+    labels = {f"{axis}_axis_units_lab": "NONE" for axis in ["abscissa", "ordinate", "orddenom", "z_axis"]}
+    return pyuff.prepare_58(
+        binary=1, func_type=4, ver_num=0, load_case_id=0, rsp_ent_name="FRF", rsp_node=1, rsp_dir=1,
+        ref_ent_name="FRF", ref_node=1, ref_dir=1, ord_data_type=4, num_pts=64, abscissa_spacing=1,
+        abscissa_min=0.0, abscissa_inc=1.0, z_axis_value=0.0, x=np.arange(64.0),
+        data=np.full(64, end), **{f"id{k}": "NONE" for k in range(1, 6)}, **units, **labels,
+    )
+
+
 def universal():
     points, cells, shapes = plate()
     ids = np.arange(1, len(points) + 1)
@@ -210,6 +227,7 @@ def universal():
     x, y, z = points.T
     zero = np.zeros(len(ids), dtype=int)
     uff.write_sets(pyuff.prepare_15(node_nums=ids, def_cs=zero, disp_cs=zero, color=zero, x=x, y=y, z=z), "add")
+    uff.write_sets(response(), "add")
     for k, shape in enumerate(shapes):
         uff.write_sets(
             pyuff.prepare_55(
