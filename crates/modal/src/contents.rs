@@ -80,12 +80,12 @@ pub fn read_contents(path: &Path) -> Result<FileContents, ReadError> {
             of(geometry, table)
         }
     };
-    contents.format = match content {
+    let name = match content {
         Content::Bulk => "nastran-bulk",
         Content::Input => "calculix-inp",
         Content::Result(format) => format.name(),
-    }
-    .to_owned();
+    };
+    name.clone_into(&mut contents.format);
     Ok(contents)
 }
 

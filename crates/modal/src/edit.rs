@@ -295,7 +295,7 @@ impl Change<'_> {
             }
             notes.extend(asymmetry(whole));
         }
-        let (squares, vectors) = eigen(mass, stiffness)?;
+        let (squares, vectors) = eigen(&mass, &stiffness)?;
         let renewed = (0..n)
             .map(|k| self.combined(modes, &rigid_parts, &centre, (k, squares[k], &vectors)))
             .collect();
@@ -369,8 +369,8 @@ fn asymmetry(whole: &Whole) -> Option<String> {
 /// The inverse problem `M y = μ (K + σ M) y`, `μ = 1/(ω² + σ)`, keeps the digits
 /// of the lowest modes; σ is zero unless there are mechanisms.
 fn eigen(
-    mass: DMatrix<f64>,
-    stiffness: DMatrix<f64>,
+    mass: &DMatrix<f64>,
+    stiffness: &DMatrix<f64>,
 ) -> Result<(Vec<f64>, DMatrix<f64>), EditError> {
     let impossible = |what| EditError::Impossible { what };
     if Cholesky::new(mass.clone()).is_none() {
@@ -384,12 +384,12 @@ fn eigen(
     } else {
         high.max(1.0) * 1e-6
     };
-    let factor = Cholesky::new(&stiffness + &mass * shift)
+    let factor = Cholesky::new(stiffness + mass * shift)
         .ok_or_else(|| impossible("no stiffness left in one of its modes"))?
         .l();
     let n = mass.nrows();
     let half = factor
-        .solve_lower_triangular(&mass)
+        .solve_lower_triangular(mass)
         .unwrap_or_else(|| DMatrix::zeros(n, n));
     let inner = factor
         .solve_lower_triangular(&half.transpose())

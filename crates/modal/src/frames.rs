@@ -63,7 +63,8 @@ impl Frame {
         let wrong = || "has three points on a line".to_owned();
         let k = (b - a).try_normalize(0.0).ok_or_else(wrong)?;
         let across = k.cross(&(c - a));
-        if !(across.norm() > COLLINEAR * (c - a).norm()) {
+        let (height, limit) = (across.norm(), COLLINEAR * (c - a).norm());
+        if height.is_nan() || limit.is_nan() || height <= limit {
             return Err(wrong());
         }
         let j = across.normalize();
@@ -230,24 +231,21 @@ mod tests {
     #[test]
     fn directions_are_tangents_of_coordinate_lines() {
         let points = [[1.0, 2.0, 3.0], [1.5, 2.5, 4.0], [4.0, 2.0, 3.5]].map(Vec3::from);
-        for (coordinates, scale) in [
-            (Coordinates::Rectangular, [1.0, 1.0, 1.0]),
-            (Coordinates::Cylindrical, [1.0, 2.0, 1.0]),
-            // r and r sin θ at θ = 30 degrees.
-            (Coordinates::Spherical, [1.0, 2.0, 1.0]),
+        // What an angle turns at: r, and r sin θ at θ = 30 degrees; none: a length.
+        for (coordinates, radii) in [
+            (Coordinates::Rectangular, [None; 3]),
+            (Coordinates::Cylindrical, [None, Some(2.0), None]),
+            (Coordinates::Spherical, [None, Some(2.0), Some(1.0)]),
         ] {
             let frame = Frame::from_points(coordinates, points).unwrap();
             let at = Vec3::new(2.0, 30.0, 40.0);
             let directions = frame.directions(&frame.place(&at));
-            for axis in 0..3 {
+            for (axis, radius) in radii.into_iter().enumerate() {
                 let step = 1e-5;
-                let angle = scale[axis] != 1.0 || axis == 2;
-                let angle = angle && coordinates != Coordinates::Rectangular;
-                let angle = angle && !(axis == 2 && coordinates == Coordinates::Cylindrical);
-                let unit = if angle { f64::to_degrees(step) } else { step };
+                let unit = radius.map_or(step, |_| f64::to_degrees(step));
                 let forth = frame.place(&(at + Vec3::ith(axis, unit)));
                 let back = frame.place(&(at - Vec3::ith(axis, unit)));
-                let tangent = (forth - back) / (2.0 * step * scale[axis]);
+                let tangent = (forth - back) / (2.0 * step * radius.unwrap_or(1.0));
                 let error = (tangent - directions.column(axis)).norm();
                 assert!(error < 1e-9, "{coordinates:?} {axis}: {error:e}");
             }

@@ -11,7 +11,7 @@ use crate::msh_scanner::Scanner;
 use crate::raw::{Geometry, ModeBuilder, ModeTable, RawElement};
 use crate::text::real;
 use fladder_mesh::Vec3;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 struct Reader {
@@ -308,8 +308,8 @@ impl Reader {
             ));
         }
         if !self.passed_over.is_empty() {
-            let types: BTreeMap<i32, ()> = self.passed_over.iter().map(|t| (*t, ())).collect();
-            let note = format!("elements of Gmsh's types {:?} are left out", types.keys());
+            let types: Vec<i32> = self.passed_over.iter().copied().collect();
+            let note = format!("elements of Gmsh's types {types:?} are left out");
             self.geometry.notes.push(note);
         }
         Ok((self.geometry, self.table))

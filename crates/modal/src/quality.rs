@@ -22,6 +22,10 @@ const SAME_SHAPE: f64 = 0.999;
 /// printed digits leave less.
 const NORMALISED: f64 = 1e-5;
 
+/// Rigid modes above this share of the lowest elastic frequency stand on springs
+/// that are worth a word; free ones are at the round-off of the eigensolver.
+const FREE: f64 = 0.02;
+
 /// One sentence for each oddity.
 pub(crate) fn remarks(result: &ModalResult, survey: &RigidSurvey) -> Vec<String> {
     let elastic: Vec<&Mode> = result
@@ -35,6 +39,7 @@ pub(crate) fn remarks(result: &ModalResult, survey: &RigidSurvey) -> Vec<String>
     remarks.extend(missing(result));
     remarks.extend(unnormalised(&elastic));
     remarks.extend(repeated(&elastic));
+    remarks.extend(supported(result, survey, &elastic));
     let measured = elastic
         .iter()
         .filter(|mode| mode.participation.is_some())
@@ -60,6 +65,24 @@ fn missing(result: &ModalResult) -> Option<String> {
         format!(
             "modes are missing between the first and the last number: {}",
             ranges(&gaps)
+        )
+    })
+}
+
+/// Rigid motions at frequencies of their own, as of an aircraft on bungees.
+fn supported(result: &ModalResult, survey: &RigidSurvey, elastic: &[&Mode]) -> Option<String> {
+    let lowest = elastic.iter().map(|mode| mode.frequency_hz);
+    let lowest = lowest.fold(f64::INFINITY, f64::min);
+    let modes = result.modes.iter().zip(&survey.fits);
+    let on_springs: Vec<String> = modes
+        .filter(|(mode, fit)| fit.rigid && mode.frequency_hz > FREE * lowest)
+        .map(|(mode, _)| format!("{} ({:.3} Hz)", mode.index, mode.frequency_hz))
+        .collect();
+    (!on_springs.is_empty()).then(|| {
+        format!(
+            "rigid motions that stand on springs: modes {}; they are left out, and rigid modes of \
+             the free structure are made from the mass properties",
+            on_springs.join(", ")
         )
     })
 }
@@ -160,6 +183,8 @@ mod tests {
                 mode(2, 3.0, 4.0, [-2.0, 2.0, 2.0, -2.0]),
                 mode(5, 7.0, 1.0, [1.0, 2.0, -1.0, 1.0]),
                 mode(6, 7.0, 1.0, [1.0, -1.0, -1.0, 3.0]),
+                mode(7, 0.5, 1.0, [1.0; 4]),
+                mode(8, 0.01, 1.0, [1.0, 2.0, 1.0, 2.0]),
             ],
             stated_mass: None,
             notes: Vec::new(),
@@ -171,6 +196,7 @@ mod tests {
             "modes 1 and 2 at 3 Hz have one shape",
             "modes 5 and 6 are a double root at 7 Hz",
             "not known of 4 elastic modes",
+            "stand on springs: modes 7 (0.500 Hz);",
         ] {
             assert!(found.contains(words), "{words} in\n{found}");
         }

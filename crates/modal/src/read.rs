@@ -191,7 +191,7 @@ impl Assembly {
         let stated_mass = table.stated_mass;
         let mut modes = self.modes(table.modes, &reorder)?;
         if table.in_local_axes {
-            self.to_basic_axes(&mut modes, &nodes, &geometry.local_axes);
+            self.turn_to_basic_axes(&mut modes, &nodes, &geometry.local_axes);
         }
         let Self { format, notes, .. } = self;
         Ok(ModalResult {
@@ -365,7 +365,7 @@ impl Assembly {
     }
 
     /// Turns displacements and rotations from the axes of their nodes.
-    fn to_basic_axes(
+    fn turn_to_basic_axes(
         &mut self,
         modes: &mut [Mode],
         nodes: &[Node],

@@ -40,7 +40,9 @@ impl Rod {
         }
         let length = arc[arc.len() - 1];
         if length > 0.0 {
-            arc.iter_mut().for_each(|s| *s /= length);
+            for s in &mut arc {
+                *s /= length;
+            }
         }
         let count = arc.len();
         let inverse = if count > 1 {
@@ -100,7 +102,9 @@ impl Rod {
         let mut shares: Vec<f64> = self.inverse.tr_mul(&row).iter().copied().collect();
         // Rounding of the inverse must not stretch rigid motion.
         let sum: f64 = shares.iter().sum();
-        shares.iter_mut().for_each(|share| *share /= sum);
+        for share in &mut shares {
+            *share /= sum;
+        }
         shares
     }
 

@@ -309,7 +309,7 @@ struct Carried {
 
 /// One of [`Plan::targets`], ready to be asked.
 enum Carrier {
-    Faces(Option<FaceSearch>),
+    Faces(Option<Box<FaceSearch>>),
     Points(Scatter),
     Beam(Rod),
 }
@@ -328,7 +328,7 @@ impl Carriers {
         let carrier = |(number, target): (usize, &Target)| match target {
             Target::Faces(faces) => {
                 let search = FaceSearch::new(target_faces(skin, faces), positions);
-                Ok(Carrier::Faces(search))
+                Ok(Carrier::Faces(search.map(Box::new)))
             }
             Target::Nodes(nodes, kernel) => {
                 let mut names = plan.components.iter().filter(|c| c.target == number);

@@ -284,12 +284,8 @@ fn masses_added_one_after_the_other_are_those_added_at_once() {
             a.name
         );
     }
-    assert!(
-        both.notes
-            .iter()
-            .any(|note| note.contains("not symmetric about y = 0"))
-            == false
-    );
+    let is_said = |note: &String| note.contains("not symmetric about y = 0");
+    assert!(!both.notes.iter().any(is_said));
 }
 
 #[test]

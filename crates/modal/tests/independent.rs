@@ -189,33 +189,16 @@ fn bulk_data_in_free_fields_and_with_faults() {
         read_structure(&data("patch.pch"), Some(&path), None).map(|read| read.nodes.len())
     };
     let small = fs::read_to_string(data("patch_small.bdf")).unwrap();
-    let free: String = small
-        .lines()
-        .map(|line| {
-            if line.starts_with(' ') || line.starts_with('$') {
-                let fields: Vec<&str> = (0..9)
-                    .map(|k| {
-                        line.get(8 * k..(8 * k + 8).min(line.len()))
-                            .unwrap_or("")
-                            .trim()
-                    })
-                    .collect();
-                return if line.starts_with('$') {
-                    format!("{line}\n")
-                } else {
-                    format!("{}\n", fields.join(","))
-                };
-            }
-            let fields: Vec<&str> = (0..9)
-                .map(|k| {
-                    line.get(8 * k..(8 * k + 8).min(line.len()))
-                        .unwrap_or("")
-                        .trim()
-                })
-                .collect();
-            format!("{}\n", fields.join(","))
-        })
-        .collect();
+    let in_free_fields = |line: &str| {
+        if line.starts_with('$') {
+            return line.to_owned();
+        }
+        let field = |k: usize| line.get(8 * k..(8 * k + 8).min(line.len())).unwrap_or("");
+        let fields: Vec<&str> = (0..9).map(|k| field(k).trim()).collect();
+        fields.join(",")
+    };
+    let lines: Vec<String> = small.lines().map(in_free_fields).collect();
+    let free = lines.join("\n");
     assert_eq!(reads(&free).unwrap(), 25);
     for (from, to, words) in [
         (

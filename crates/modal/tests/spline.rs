@@ -140,7 +140,7 @@ fn test_points_on_one_sheet_carry_the_surface_about_them() {
     // The thin plate bends less willingly near an edge and takes twice the points.
     for (kernel, count) in [(Kernel::Polyharmonic, 14), (Kernel::ThinPlate, 28)] {
         let result = sheet(count);
-        let transfer = build_transfer(&result, &mesh, &splines(kernel)).unwrap();
+        let transfer = build_transfer(&result, &mesh, splines(kernel)).unwrap();
         let [rigid, bent] = errors(&transfer, &result, &mesh);
         println!("{kernel:?} on a sheet of {count}: rigid {rigid:.1e}, bending {bent:.1e}");
         assert!(rigid < 1e-12 && bent < 1e-3);
@@ -157,13 +157,13 @@ fn a_beam_with_rotations_carries_a_wing_and_one_without_is_refused() {
         .into_iter()
         .map(|y| Vec3::new(0.4, y, 0.0));
     let beam = points(line.collect());
-    match build_transfer(&beam, &mesh, &splines(Kernel::Polyharmonic)) {
+    match build_transfer(&beam, &mesh, splines(Kernel::Polyharmonic)) {
         Err(TransferError::OnOneLine { points: 25, .. }) => {}
         other => panic!("{other:?}"),
     }
     let beam = with_rotations(beam);
     for kernel in KERNELS {
-        let transfer = build_transfer(&beam, &mesh, &splines(kernel)).unwrap();
+        let transfer = build_transfer(&beam, &mesh, splines(kernel)).unwrap();
         let [rigid, bent] = errors(&transfer, &beam, &mesh);
         println!("{kernel:?} on a beam: rigid {rigid:.1e}, bending {bent:.1e}");
         assert!(rigid < 1e-12 && bent < 1e-3);
@@ -177,7 +177,7 @@ fn forces_and_displacements_do_the_same_work_on_both_sides() {
         .into_iter()
         .map(|y| Vec3::new(0.4, y, 0.0));
     let beam = with_rotations(points(line.collect()));
-    let transfer = build_transfer(&beam, &mesh, &splines(Kernel::ThinPlate)).unwrap();
+    let transfer = build_transfer(&beam, &mesh, splines(Kernel::ThinPlate)).unwrap();
     let columns: Vec<Vec3> = (0..transfer.matrix.columns())
         .map(|k| {
             Vec3::new(

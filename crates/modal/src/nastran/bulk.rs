@@ -92,7 +92,7 @@ impl Reader {
             let number = lines.number();
             if let Some(card) = cards.push(&line, number) {
                 self.card(&card)
-                    .map_err(|m| at(lines, card.line, &card.name, m))?;
+                    .map_err(|m| at(lines, card.line, &card.name, &m))?;
             }
         }
         self.take_last(&mut cards, lines)?;
@@ -105,7 +105,7 @@ impl Reader {
             return Ok(());
         };
         self.card(&card)
-            .map_err(|m| at(lines, card.line, &card.name, m))
+            .map_err(|m| at(lines, card.line, &card.name, &m))
     }
 
     fn include(
@@ -288,7 +288,7 @@ fn beside(path: &Path, name: &str) -> PathBuf {
     }
 }
 
-fn at(lines: &Lines, line: usize, card: &str, message: String) -> ReadError {
+fn at(lines: &Lines, line: usize, card: &str, message: &str) -> ReadError {
     ReadError::Syntax {
         file: lines.name(),
         line,

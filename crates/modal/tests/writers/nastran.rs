@@ -51,9 +51,11 @@ fn number(value: f64, digits: usize) -> String {
 }
 
 fn numbers(u: &Vec3, width: usize) -> String {
-    u.iter()
-        .map(|x| format!("{:>width$}", number(*x, 6)))
-        .collect()
+    let mut text = String::new();
+    for x in u {
+        write!(text, "{:>width$}", number(*x, 6)).unwrap();
+    }
+    text
 }
 
 pub(crate) fn pch(contents: &ModalResult) -> String {
