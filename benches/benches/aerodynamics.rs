@@ -3,10 +3,10 @@
 //! `cargo bench -p fladder-benches --bench aerodynamics`
 
 use divan::{Bencher, black_box};
-use fladder_bem::panels::PanelSet;
+use fladder_bem::pieces::{Equations, Factorisation, Instructions, PanelPairs};
 use fladder_bem::{Problem, Silent, Solution, solve};
 use fladder_mesh::shapes::NacaWing;
-use fladder_mesh::{Frame, SurfaceMode, Topology, TriMesh, Vec3, trailing_edge};
+use fladder_mesh::{Frame, SurfaceMode, Topology, TrailingEdge, TriMesh, Vec3, trailing_edge};
 
 fn main() {
     divan::main();
@@ -22,29 +22,76 @@ fn wing(n_chord: usize, n_half_span: usize) -> TriMesh {
     .expect("a wing")
 }
 
-/// Doublet and source influences of all panels at one point; divide by the panels.
-#[divan::bench(args = [8, 16, 32])]
-fn panel_pairs(bencher: Bencher, n_chord: usize) {
-    let mesh = wing(n_chord, 16);
-    let panels = PanelSet::new(&mesh.vertices, &mesh.triangles);
-    let mut scratch = panels.scratch();
-    let mut doublets = vec![[0.0; 3]; panels.len()];
-    let mut sources = doublets.clone();
+/// D and S of a far and of a near block at eight points, one pair an item; first by the
+/// scalar functions that are the oracle.
+#[divan::bench(args = [12.0, 1.0])]
+fn panel_pairs_scalar(bencher: Bencher, distance: f64) {
+    let pairs = PanelPairs::new(&wing(16, 16), distance);
     bencher
-        .counter(divan::counter::ItemsCount::new(panels.len()))
-        .bench_local(|| {
-            let point = black_box(Vec3::new(0.4, 0.3, 0.05));
-            panels.doublets_and_sources(point, &mut scratch, &mut doublets, &mut sources);
-        });
+        .counter(divan::counter::ItemsCount::new(pairs.len()))
+        .bench_local(|| black_box(&pairs).scalar());
+}
+
+#[divan::bench(args = [12.0, 1.0])]
+fn panel_pairs_avx2(bencher: Bencher, distance: f64) {
+    panel_pairs(bencher, distance, Instructions::Avx2);
+}
+
+#[divan::bench(args = [12.0, 1.0])]
+fn panel_pairs_avx512(bencher: Bencher, distance: f64) {
+    panel_pairs(bencher, distance, Instructions::Avx512);
+}
+
+fn panel_pairs(bencher: Bencher, distance: f64, instructions: Instructions) {
+    let mut pairs = PanelPairs::new(&wing(16, 16), distance);
+    bencher
+        .counter(divan::counter::ItemsCount::new(pairs.len()))
+        .bench_local(|| black_box(&mut pairs).in_lanes(instructions));
+}
+
+/// Doublets and sources of a whole surface, tested on one cluster; one pair an item.
+#[divan::bench]
+fn tested_pairs(bencher: Bencher) {
+    let mesh = wing(32, 32);
+    let equations = Equations::new(&mesh, &edges(&mesh), 0.5).expect("equations");
+    bencher
+        .counter(divan::counter::ItemsCount::new(
+            equations.pairs_of_a_cluster(),
+        ))
+        .bench_local(|| black_box(&equations).one_cluster());
+}
+
+/// Blocked factorisation in single precision.
+#[divan::bench(args = [4096, 8192], sample_count = 3)]
+fn factorisation(bencher: Bencher, size: usize) {
+    let matrix = Factorisation::new(size);
+    bencher
+        .counter(divan::counter::ItemsCount::new(matrix.flops() as usize))
+        .bench_local(|| black_box(&matrix).factorise());
+}
+
+/// The matrix product that bounds it, on all threads.
+#[divan::bench(args = [4096, 8192], sample_count = 3)]
+fn product(bencher: Bencher, size: usize) {
+    let matrix = Factorisation::new(size);
+    bencher
+        .counter(divan::counter::ItemsCount::new(
+            matrix.product_flops() as usize
+        ))
+        .bench_local(|| black_box(&matrix).product());
+}
+
+fn edges(mesh: &TriMesh) -> Vec<TrailingEdge> {
+    trailing_edge::find_by_shape(
+        mesh,
+        &Topology::new(mesh),
+        trailing_edge::Settings::default(),
+    )
 }
 
 fn solution(n_chord: usize) -> Solution {
     let mesh = wing(n_chord, n_chord);
-    let edges = trailing_edge::find_by_shape(
-        &mesh,
-        &Topology::new(&mesh),
-        trailing_edge::Settings::default(),
-    );
+    let edges = edges(&mesh);
     let modes: Vec<SurfaceMode> = (0..26)
         .map(|power| SurfaceMode {
             name: format!("mode {power}"),

@@ -91,13 +91,10 @@ impl Paths {
         }
     }
 
-    /// The path whose sector holds arg s, Im s ≥ 0.
-    pub(crate) fn of(&self, s: c64) -> &Path {
-        if s.arg().to_degrees() <= SECTOR_LIMIT_DEG {
-            &self.oscillating
-        } else {
-            &self.decaying
-        }
+    /// The path whose sector holds arg s, Im s ≥ 0: 0 for oscillating, 1 for decaying
+    /// motion.
+    pub(crate) fn number_of(s: c64) -> usize {
+        usize::from(s.arg().to_degrees() > SECTOR_LIMIT_DEG)
     }
 }
 

@@ -14,10 +14,11 @@
 //! streamline is the product r = √(ζ − iρ) √(ζ + iρ), ζ = ξ − d·u: the principal root of
 //! r² itself has the wrong sign past arg ξ = −90°.
 
+#[cfg(test)]
 use faer::c64;
 use fladder_mesh::Vec3;
 
-const INVERSE_FOUR_PI: f64 = 0.25 * std::f64::consts::FRAC_1_PI;
+pub(crate) const INVERSE_FOUR_PI: f64 = 0.25 * std::f64::consts::FRAC_1_PI;
 
 /// Streamlines and the strips between them.
 #[derive(Clone, Debug)]
@@ -30,72 +31,61 @@ pub(crate) struct FarWake {
     pub(crate) strips: Vec<[u32; 2]>,
 }
 
+#[cfg(test)]
 impl FarWake {
-    /// Influence of each streamline's jump at each node: `out[line * nodes + node]`,
-    /// times the node's weight; without e^{−sξ}.
-    ///
-    /// `distances` is working space of the same size.
-    pub(crate) fn influence(
-        &self,
-        point: Vec3,
-        nodes: &[c64],
-        weights: &[c64],
-        distances: &mut Vec<c64>,
-        out: &mut [c64],
-    ) {
-        out.fill(c64::new(0.0, 0.0));
-        self.inverse_distances(point, nodes, distances);
+    /// Influence density of each streamline's unit jump at each node, without e^{−sξ}:
+    /// streamlines × nodes. What [`crate::far_tiles`] must give.
+    pub(crate) fn influence(&self, point: Vec3, nodes: &[c64]) -> Vec<c64> {
         let n = nodes.len();
+        let mut out = vec![c64::new(0.0, 0.0); self.anchors.len() * n];
         for &[a, b] in &self.strips {
             let (a, b) = (a as usize, b as usize);
-            let strip = Strip::new(self.anchors[a], self.anchors[b], self.direction, point);
+            let ends = [self.anchors[a], self.anchors[b]];
+            let strip = Strip::new(ends[0], ends[1], self.direction, point);
             if strip.height == 0.0 {
                 continue;
             }
-            for m in 0..n {
-                let inverse = [distances[a * n + m], distances[b * n + m]];
-                let [first, second] = strip.density(nodes[m], inverse);
-                out[a * n + m] += first * weights[m];
-                out[b * n + m] += second * weights[m];
+            let lines = ends.map(|end| Line::new(&end, self.direction, point));
+            for (m, xi) in nodes.iter().enumerate() {
+                let inverse = [&lines[0], &lines[1]].map(|line| line.inverse_distance(*xi));
+                let [first, second] = strip.density(*xi, inverse);
+                out[a * n + m] += first;
+                out[b * n + m] += second;
             }
         }
-    }
-
-    fn inverse_distances(&self, point: Vec3, nodes: &[c64], distances: &mut Vec<c64>) {
-        distances.clear();
-        for anchor in &self.anchors {
-            let offset = point - anchor;
-            let along = offset.dot(&self.direction);
-            let across = (offset - along * self.direction).norm();
-            distances.extend(nodes.iter().map(|xi| {
-                let zeta = xi - along;
-                let below = root(zeta - c64::new(0.0, across));
-                let above = root(zeta + c64::new(0.0, across));
-                c64::new(1.0, 0.0) / (below * above)
-            }));
-        }
+        out
     }
 }
 
-/// Principal square root without angles: |z| from the squares, which cannot overflow for
-/// lengths, and the smaller part from the larger by Im z = 2 Re √z Im √z. Half of a whole
-/// computation went into the polar form.
-fn root(z: c64) -> c64 {
-    let size = (z.re * z.re + z.im * z.im).sqrt();
-    let larger = (0.5 * (size + z.re.abs())).sqrt();
-    if larger == 0.0 {
-        return c64::new(0.0, 0.0);
+/// One streamline seen from one point.
+#[cfg(test)]
+struct Line {
+    along: f64,
+    across: f64,
+}
+
+#[cfg(test)]
+impl Line {
+    fn new(anchor: &Vec3, direction: Vec3, point: Vec3) -> Self {
+        let offset = point - anchor;
+        let along = offset.dot(&direction);
+        Self {
+            along,
+            across: (offset - along * direction).norm(),
+        }
     }
-    let smaller = 0.5 * z.im.abs() / larger;
-    let (re, im) = if z.re >= 0.0 {
-        (larger, smaller)
-    } else {
-        (smaller, larger)
-    };
-    c64::new(re, im.copysign(z.im))
+
+    /// 1/r at distance ξ.
+    fn inverse_distance(&self, xi: c64) -> c64 {
+        let zeta = xi - self.along;
+        let below = (zeta - c64::new(0.0, self.across)).sqrt();
+        let above = (zeta + c64::new(0.0, self.across)).sqrt();
+        c64::new(1.0, 0.0) / (below * above)
+    }
 }
 
 /// One strip seen from one point.
+#[cfg(test)]
 struct Strip {
     /// d·N / 4π.
     height: f64,
@@ -109,6 +99,7 @@ struct Strip {
     distance_squared: f64,
 }
 
+#[cfg(test)]
 impl Strip {
     fn new(a: Vec3, b: Vec3, direction: Vec3, point: Vec3) -> Self {
         let e = b - a;
@@ -132,22 +123,5 @@ impl Strip {
         let moment = (inverse[0] - inverse[1]) / self.span_squared;
         let second = moment + foot * whole;
         [(whole - second) * self.height, second * self.height]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_root_is_the_principal_one() {
-        for degrees in (-179..=179).step_by(7) {
-            for size in [1e-6, 1.0, 3e4] {
-                let z = c64::from_polar(size, f64::from(degrees).to_radians());
-                let (found, wanted) = (root(z), z.sqrt());
-                assert!((found - wanted).norm() < 4e-16 * wanted.norm(), "{z}");
-            }
-        }
-        assert_eq!(root(c64::new(0.0, 0.0)), c64::new(0.0, 0.0));
     }
 }

@@ -15,20 +15,20 @@
 use crate::cut::CutSurface;
 use crate::error::BemError;
 use crate::image::{self, Image};
-use crate::near_field::{POINTS, Spheres, TestTriangle};
-use crate::panels::{CornerValues, PanelScratch, PanelSet};
+use crate::lanes::WIDTH;
+use crate::near_field::{POINTS, TestTriangle};
+use crate::ordering::spatial_order;
+use crate::panel_block::{BLOCK, PanelBlock};
 use crate::progress::Progress;
+use crate::tiles::vertex_blocks;
+use crate::tiles::{CLUSTER, PointValues, TestCluster, Tile, TileScratch, free_terms};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 use fladder_mesh::Vec3;
 use rayon::prelude::*;
 
-/// Triangles whose test points one task evaluates; fixed, so that the order of sums does
-/// not depend on the number of threads.
-pub(crate) const TASK_TRIANGLES: usize = 16;
-
-/// Tasks held in memory at once.
-const TASKS_AT_ONCE: usize = 32;
+/// Clusters whose rows are held in memory at once.
+pub(crate) const CLUSTERS_AT_ONCE: usize = 16;
 
 /// Normals, areas, gradients and test points of a cut surface.
 #[derive(Clone, Debug)]
@@ -50,8 +50,10 @@ pub(crate) struct Galerkin {
     pub(crate) image_tests: Vec<TestTriangle>,
     /// Vertices whose potential is zero by antisymmetry.
     constrained: Vec<bool>,
-    panels: PanelSet,
-    spheres: Spheres,
+    /// Test triangles, close ones together.
+    pub(crate) clusters: Vec<TestCluster>,
+    /// The surface in blocks of close triangles.
+    blocks: Vec<PanelBlock>,
 }
 
 /// The assembled equations.
@@ -65,10 +67,13 @@ pub(crate) struct Assembly {
     pub(crate) free_terms: Vec<f64>,
 }
 
-struct TaskRows {
-    doublets: Vec<f64>,
+/// The rows that one cluster contributes to.
+struct ClusterRows {
+    /// c φ − D φ by rows.
+    rows: Vec<f64>,
+    /// −S σ.
     sources: Mat<f64>,
-    free_terms: Vec<f64>,
+    free_terms: Vec<PointValues>,
 }
 
 impl Galerkin {
@@ -98,8 +103,19 @@ impl Galerkin {
                 weights[v as usize] += twice_area / 6.0;
             }
         }
-        let panels = PanelSet::new(&surface.vertices, &surface.triangles);
-        Self {
+        let centres: Vec<Vec3> = surface
+            .triangles
+            .iter()
+            .map(|t| {
+                t.iter()
+                    .map(|&v| surface.vertices[v as usize])
+                    .sum::<Vec3>()
+                    / 3.0
+            })
+            .collect();
+        let order = spatial_order(&centres, BLOCK, WIDTH);
+        let blocks = vertex_blocks(&surface.vertices, &surface.triangles, &order);
+        let mut galerkin = Self {
             triangles: surface.triangles.clone(),
             n_vertices,
             normals,
@@ -114,9 +130,14 @@ impl Galerkin {
                 .iter()
                 .map(|v| image == Image::Odd && image::on_plane(v))
                 .collect(),
-            spheres: Spheres::new(&panels),
-            panels,
-        }
+            clusters: Vec::new(),
+            blocks,
+        };
+        galerkin.clusters = order
+            .chunks(CLUSTER)
+            .map(|triangles| TestCluster::new(&galerkin, triangles))
+            .collect();
+        galerkin
     }
 
     pub(crate) fn n_triangles(&self) -> usize {
@@ -141,30 +162,40 @@ impl Galerkin {
         progress: &dyn Progress,
     ) -> Result<Assembly, BemError> {
         let n = self.n_vertices;
-        let columns = sources.ncols();
         let mut rows = vec![0.0; n * n];
-        let mut right_hand_sides = Mat::zeros(n, columns);
+        let mut right_hand_sides = Mat::zeros(n, sources.ncols());
         let mut free_terms = vec![0.0; 3 * self.n_triangles()];
-        progress.stage("assembling body influences", self.n_triangles() as u64);
-        let tasks: Vec<usize> = (0..self.n_triangles()).step_by(TASK_TRIANGLES).collect();
-        for batch in tasks.chunks(TASKS_AT_ONCE) {
+        let sources = self.in_order_of_blocks(sources);
+        let stage = "assembling body influences";
+        progress.stage(stage, self.n_triangles() as u64);
+        let mut memory = Vec::new();
+        memory.resize_with(CLUSTERS_AT_ONCE, || ClusterRows {
+            rows: Vec::new(),
+            sources: Mat::new(),
+            free_terms: Vec::new(),
+        });
+        for batch in self.clusters.chunks(CLUSTERS_AT_ONCE) {
             if progress.cancelled() {
-                return Err(BemError::Interrupted {
-                    stage: "assembling body influences",
-                });
+                return Err(BemError::Interrupted { stage });
             }
-            let evaluated: Vec<TaskRows> = batch
+            let evaluated = &mut memory[..batch.len()];
+            batch
                 .par_iter()
-                .map(|&first| {
-                    let result = self.evaluate(first, sources);
-                    progress.advance(self.task_triangles(first).len() as u64);
-                    result
-                })
-                .collect();
-            self.accumulate(batch, &evaluated, &mut rows, &mut right_hand_sides);
-            for (&first, task) in batch.iter().zip(&evaluated) {
-                free_terms[3 * first..3 * first + task.free_terms.len()]
-                    .copy_from_slice(&task.free_terms);
+                .zip(evaluated.par_iter_mut())
+                .for_each(|(cluster, result)| {
+                    self.evaluate(cluster, sources.as_ref(), result);
+                    let triangles = cluster.groups.iter().map(|g| g.triangles.len());
+                    progress.advance(triangles.sum::<usize>() as u64);
+                });
+            self.accumulate(batch, evaluated, &mut rows, &mut right_hand_sides);
+            for (cluster, result) in batch.iter().zip(&*evaluated) {
+                for (group, free) in cluster.groups.iter().zip(&result.free_terms) {
+                    for (lane, &t) in group.triangles.iter().enumerate() {
+                        for (q, values) in free.iter().enumerate() {
+                            free_terms[3 * t as usize + q] = values[lane];
+                        }
+                    }
+                }
             }
         }
         for v in (0..n).filter(|&v| self.constrained[v]) {
@@ -177,175 +208,98 @@ impl Galerkin {
         })
     }
 
-    pub(crate) fn task_triangles(&self, first: usize) -> std::ops::Range<usize> {
-        first..(first + TASK_TRIANGLES).min(self.n_triangles())
+    /// Corner values with the triangles in the order of the blocks.
+    fn in_order_of_blocks(&self, sources: MatRef<'_, f64>) -> Mat<f64> {
+        let order: Vec<usize> = self
+            .blocks
+            .iter()
+            .flat_map(|b| &b.triangles)
+            .map(|&t| t as usize)
+            .collect();
+        Mat::from_fn(sources.nrows(), sources.ncols(), |i, j| {
+            sources[(3 * order[i / 3] + i % 3, j)]
+        })
     }
 
-    /// c N − D and −S σ at the test points of one task.
-    fn evaluate(&self, first: usize, sources: MatRef<'_, f64>) -> TaskRows {
-        let range = self.task_triangles(first);
-        let n_points = 3 * range.len();
-        let mut seen = Seen::new(self);
-        let mut doublets = vec![0.0; n_points * self.n_vertices];
-        let mut influences = vec![[0.0; 3]; n_points * self.n_triangles()];
-        let mut free_terms = Vec::with_capacity(n_points);
-        for ((t, rows), s) in range
-            .zip(doublets.chunks_exact_mut(3 * self.n_vertices))
-            .zip(influences.chunks_exact_mut(3 * self.n_triangles()))
-        {
-            let mut free = [1.0; 3];
-            seen.from(&self.tests[t], s, rows);
-            for (free, row) in free.iter_mut().zip(rows.chunks_exact(self.n_vertices)) {
-                *free -= row.iter().sum::<f64>();
-            }
-            if let Some(sign) = self.image.sign() {
-                let other = seen.seen_from_image(&self.image_tests[t]);
-                for (s, value) in s.as_flattened_mut().iter_mut().zip(other.sources) {
-                    *s += sign * value;
-                }
-                for ((free, row), image) in free
-                    .iter_mut()
-                    .zip(rows.chunks_exact_mut(self.n_vertices))
-                    .zip(other.rows.chunks_exact(self.n_vertices))
-                {
-                    *free -= image.iter().sum::<f64>();
-                    for (value, image) in row.iter_mut().zip(image) {
-                        *value += sign * image;
-                    }
-                }
-            }
-            for ((free, row), point) in free
-                .iter()
-                .zip(rows.chunks_exact_mut(self.n_vertices))
-                .zip(&POINTS)
-            {
-                for (&v, shape) in self.triangles[t].iter().zip(point) {
-                    row[v as usize] += free * shape;
-                }
-            }
-            free_terms.extend(free);
-        }
-        let influences = influences.as_flattened();
-        let transposed =
-            MatRef::from_column_major_slice(influences, 3 * self.n_triangles(), n_points);
-        let mut product = Mat::zeros(n_points, sources.ncols());
-        matmul(
-            &mut product,
-            Accum::Replace,
-            transposed.transpose(),
-            sources,
-            -1.0,
-            Par::Seq,
-        );
-        TaskRows {
-            doublets,
-            sources: product,
-            free_terms,
-        }
-    }
-
-    /// Adds the tested rows; one thread a matrix row, tasks in their order.
-    fn accumulate(
+    /// c N − D and −S σ tested over one cluster.
+    fn evaluate(
         &self,
-        batch: &[usize],
-        evaluated: &[TaskRows],
-        rows: &mut [f64],
-        right_hand_sides: &mut Mat<f64>,
+        cluster: &TestCluster,
+        sources: MatRef<'_, f64>,
+        result: &mut ClusterRows,
     ) {
-        let mut touching: Vec<Vec<(usize, usize, f64)>> = vec![Vec::new(); self.n_vertices];
-        for (task, &first) in batch.iter().enumerate() {
-            for (local, t) in self.task_triangles(first).enumerate() {
-                for q in 0..3 {
-                    for (corner, &v) in self.triangles[t].iter().enumerate() {
-                        let weight = self.test_weight(t, q, corner);
-                        touching[v as usize].push((task, 3 * local + q, weight));
-                    }
-                }
-            }
-        }
-        rows.par_chunks_exact_mut(self.n_vertices)
-            .zip(&touching)
-            .for_each(|(row, list)| {
-                for &(task, point, weight) in list {
-                    let from = point * self.n_vertices;
-                    let values = &evaluated[task].doublets[from..from + self.n_vertices];
-                    for (a, d) in row.iter_mut().zip(values) {
-                        *a += weight * d;
-                    }
-                }
-            });
-        for (v, list) in touching.iter().enumerate() {
-            for &(task, point, weight) in list {
-                for c in 0..right_hand_sides.ncols() {
-                    right_hand_sides[(v, c)] += weight * evaluated[task].sources[(point, c)];
-                }
-            }
-        }
-    }
-}
-
-/// Working space for what test triangles see of the surface.
-struct Seen<'a> {
-    of: &'a Galerkin,
-    scratch: PanelScratch,
-    doublets: [Vec<CornerValues>; 3],
-    image_rows: Vec<f64>,
-    image_sources: Vec<CornerValues>,
-}
-
-/// What the points of an image see.
-struct ImageSeen<'a> {
-    rows: &'a [f64],
-    sources: &'a [f64],
-}
-
-impl<'a> Seen<'a> {
-    fn new(of: &'a Galerkin) -> Self {
-        let has_image = usize::from(of.image.sign().is_some());
-        Self {
-            of,
-            scratch: of.panels.scratch(),
-            doublets: std::array::from_fn(|_| vec![[0.0; 3]; of.n_triangles()]),
-            image_rows: vec![0.0; has_image * 3 * of.n_vertices],
-            image_sources: vec![[0.0; 3]; has_image * 3 * of.n_triangles()],
-        }
-    }
-
-    /// Subtracts D from the three `rows` of vertices and puts S into `sources`.
-    fn from(&mut self, test: &TestTriangle, sources: &mut [CornerValues], rows: &mut [f64]) {
-        let n = self.of.n_triangles();
-        let (first, rest) = sources.split_at_mut(n);
-        let (second, third) = rest.split_at_mut(n);
-        test.doublets_and_sources(
-            &self.of.panels,
-            &self.of.spheres,
-            &mut self.scratch,
-            &mut self.doublets,
-            &mut [first, second, third],
-        );
-        for (row, d) in rows
-            .chunks_exact_mut(self.of.n_vertices)
-            .zip(&self.doublets)
-        {
-            for (corners, values) in self.of.triangles.iter().zip(d) {
-                for (&v, value) in corners.iter().zip(values) {
+        let (n, height) = (self.n_vertices, cluster.rows.len());
+        let rows = &mut result.rows;
+        rows.clear();
+        rows.resize(height * n, 0.0);
+        let mut product = Mat::zeros(height, sources.ncols());
+        let mut sums = vec![[[0.0; WIDTH]; 3]; cluster.groups.len()];
+        let (mut scratch, mut tile) = (TileScratch::default(), Tile::default());
+        let mut corner = 0;
+        for block in &self.blocks {
+            scratch.fill(self, cluster, block, true, &mut tile, &mut sums);
+            let tested = tile.doublets.chunks_exact(block.places());
+            for (row, tested) in rows.chunks_exact_mut(n).zip(tested) {
+                for (&v, value) in block.columns.iter().zip(tested) {
                     row[v as usize] -= value;
                 }
             }
+            let corners = 3 * block.triangles.len();
+            matmul(
+                &mut product,
+                Accum::Add,
+                MatRef::from_row_major_slice(&tile.sources, height, corners),
+                sources.subrows(corner, corners),
+                -1.0,
+                Par::Seq,
+            );
+            corner += corners;
         }
+        let free: Vec<PointValues> = sums.iter().map(free_terms).collect();
+        for (group, free) in cluster.groups.iter().zip(&free) {
+            for (lane, &t) in group.triangles.iter().enumerate() {
+                for (weights, places) in group.weights.iter().zip(&group.rows) {
+                    let from = places[lane] as usize * n;
+                    for (q, shape) in POINTS.iter().enumerate() {
+                        let value = weights[q][lane] * free[q][lane];
+                        for (&v, shape) in self.triangles[t as usize].iter().zip(shape) {
+                            rows[from + v as usize] += value * shape;
+                        }
+                    }
+                }
+            }
+        }
+        result.sources = product;
+        result.free_terms = free;
     }
 
-    /// As [`Self::from`], into own memory.
-    fn seen_from_image(&mut self, test: &TestTriangle) -> ImageSeen<'_> {
-        let mut rows = std::mem::take(&mut self.image_rows);
-        let mut sources = std::mem::take(&mut self.image_sources);
-        rows.fill(0.0);
-        self.from(test, &mut sources, &mut rows);
-        self.image_rows = rows;
-        self.image_sources = sources;
-        ImageSeen {
-            rows: &self.image_rows,
-            sources: self.image_sources.as_flattened(),
+    /// Adds the rows of a batch; one thread a matrix row, clusters in their order.
+    fn accumulate(
+        &self,
+        batch: &[TestCluster],
+        evaluated: &[ClusterRows],
+        rows: &mut [f64],
+        right_hand_sides: &mut Mat<f64>,
+    ) {
+        let n = self.n_vertices;
+        let mut touching: Vec<Vec<(usize, usize)>> = vec![Vec::new(); n];
+        for (c, cluster) in batch.iter().enumerate() {
+            for (r, &v) in cluster.rows.iter().enumerate() {
+                touching[v as usize].push((c, r));
+                for j in 0..right_hand_sides.ncols() {
+                    right_hand_sides[(v as usize, j)] += evaluated[c].sources[(r, j)];
+                }
+            }
         }
+        rows.par_chunks_exact_mut(n)
+            .zip(&touching)
+            .for_each(|(row, list)| {
+                for &(c, r) in list {
+                    let values = &evaluated[c].rows[r * n..(r + 1) * n];
+                    for (a, d) in row.iter_mut().zip(values) {
+                        *a += d;
+                    }
+                }
+            });
     }
 }

@@ -16,8 +16,10 @@
 //! | `body_path`, `body_trace`, `body_node`, `carry` | lines that carry a jump down a body |
 //! | `stations`, `wake`, `wake_builder`, `wake_jumps`, `sheet_lines`, `wake_sheet` | the sheet and what jump it carries |
 //! | `strike` | sheets that run into bodies |
-//! | `contour`, `far_wake` | its semi-infinite part on a path in the complex plane |
-//! | `galerkin`, `near_field`, `dense` | the equations and their factorisation |
+//! | `contour`, `far_wake`, `far_tiles` | its semi-infinite part on a path in the complex plane |
+//! | `lanes`, `panel_block`, `ordering`, `tiles` | eight points at once, blocks of close panels, test triangles |
+//! | `galerkin`, `near_field` | the equations |
+//! | `dense`, `blocked_lu` | their factorisation |
 //! | `image` | half models |
 //! | `guards` | what the mesh resolves |
 //! | `onset`, `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
@@ -29,6 +31,7 @@
 //! Nothing here knows about files, clocks or terminals.
 
 mod adjacency;
+mod blocked_lu;
 mod blocks;
 mod body_node;
 mod body_path;
@@ -41,13 +44,19 @@ mod dense;
 #[cfg(test)]
 mod direct;
 mod error;
+mod far_tiles;
 mod far_wake;
 mod galerkin;
 mod guards;
 mod image;
+mod lanes;
 mod near_field;
 mod onset;
+mod ordering;
+mod panel_block;
 pub mod panels;
+#[doc(hidden)]
+pub mod pieces;
 mod prepare;
 mod pressure;
 mod progress;
@@ -59,6 +68,7 @@ mod stations;
 mod steady;
 mod strike;
 mod surface_flow;
+mod tiles;
 mod transfer;
 mod trefftz;
 mod wake;
@@ -67,6 +77,7 @@ mod wake_influence;
 mod wake_jumps;
 mod wake_sheet;
 
+pub use dense::Factors;
 pub use error::{BemError, LaplaceError};
 pub use fladder_mesh::Symmetry;
 pub use guards::guards;

@@ -12,8 +12,10 @@
 //! Nᵢ(q) = ½ δ_iq + 1/6 and weights 1/3, D_q = 3 Σᵢ (2 δ_qi − 1/3) mᵢ. Everything after
 //! goes on as if there were three points.
 
-use crate::panels::{CornerValues, PanelScratch, PanelSet, sphere};
+use crate::panel_block::{NEAR_POINTS, NearValues};
+use crate::panels::{CornerValues, sphere};
 use fladder_mesh::Vec3;
+use std::sync::LazyLock;
 
 /// Barycentric coordinates of the three test points.
 pub(crate) const POINTS: [[f64; 3]; 3] = [
@@ -28,132 +30,98 @@ pub(crate) const POINTS: [[f64; 3]; 3] = [
 /// are large and cancel between neighbours. So there is one kind of division only, and
 /// the border lies where panels look smooth: the lift of a 3 % wing is then within 5e-4
 /// of that with all panels divided (1: 1e-3; 3: 2e-4).
-const NEAR: f64 = 2.0;
+pub(crate) const NEAR: f64 = 2.0;
 
-/// Times a near triangle is quartered. Another level changes the lift of a coarse 3 %
-/// wing by 0.3 % and costs four times as much.
-const LEVEL: u32 = 1;
+/// Points of a near triangle: three in each of its quarters. Another level of quarters
+/// changes the lift of a coarse 3 % wing by 0.3 % and costs four times as much.
+const DIVIDED: usize = 12;
+const _: () = assert!(DIVIDED + 3 <= NEAR_POINTS);
 
-/// Points and barycentric coordinates of a divided test triangle.
-#[derive(Clone, Debug)]
-struct Division {
-    points: Vec<Vec3>,
-    coordinates: Vec<[f64; 3]>,
-}
+/// Their barycentric coordinates.
+static DIVISION: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| divided(1));
 
 /// One test triangle.
 #[derive(Clone, Debug)]
 pub(crate) struct TestTriangle {
     pub(crate) points: [Vec3; 3],
     centre: Vec3,
-    radius: f64,
-    division: Division,
+    pub(crate) radius: f64,
+    /// Points of the divided triangle, then the three test points, by coordinate.
+    pub(crate) near_points: [[f64; NEAR_POINTS]; 3],
 }
 
-/// Where the panels of a set are.
-#[derive(Clone, Debug)]
-pub(crate) struct Spheres {
-    centres: Vec<Vec3>,
-    radii: Vec<f64>,
-}
-
-impl Spheres {
-    pub(crate) fn new(panels: &PanelSet) -> Self {
-        let (centres, radii) = (0..panels.len()).map(|t| panels.sphere(t)).unzip();
-        Self { centres, radii }
-    }
-
-    /// Triangles near the test triangle.
-    fn near<'a>(&'a self, test: &'a TestTriangle) -> impl Iterator<Item = usize> + 'a {
-        self.centres
-            .iter()
-            .zip(&self.radii)
-            .enumerate()
-            .filter_map(|(t, (centre, radius))| {
-                let reach = NEAR * (radius + test.radius);
-                ((centre - test.centre).norm_squared() < reach * reach).then_some(t)
-            })
-    }
+/// What the divided triangle changes at the three points.
+pub(crate) struct Change {
+    pub(crate) doublets: [CornerValues; 3],
+    pub(crate) sources: [CornerValues; 3],
 }
 
 impl TestTriangle {
     pub(crate) fn new(corners: &[Vec3; 3]) -> Self {
         let at = |b: &[f64; 3]| b[0] * corners[0] + b[1] * corners[1] + b[2] * corners[2];
-        let coordinates = divided(LEVEL);
-        let division = Division {
-            points: coordinates.iter().map(at).collect(),
-            coordinates,
-        };
+        let points = POINTS.map(|b| at(&b));
+        let mut near_points = [[0.0; NEAR_POINTS]; 3];
+        for i in 0..NEAR_POINTS {
+            let point = match i.checked_sub(DIVIDED) {
+                None => at(&DIVISION[i]),
+                Some(q) => points[q.min(2)],
+            };
+            for (axis, values) in near_points.iter_mut().enumerate() {
+                values[i] = point[axis];
+            }
+        }
         let (centre, radius) = sphere(corners);
         Self {
-            points: POINTS.map(|b| at(&b)),
+            points,
             centre,
             radius,
-            division,
+            near_points,
         }
     }
 
-    /// D at the three points, or values with the same moments where a panel is near.
-    pub(crate) fn doublets(
-        &self,
-        panels: &PanelSet,
-        spheres: &Spheres,
-        scratch: &mut PanelScratch,
-        out: &mut [Vec<CornerValues>; 3],
-    ) {
-        for (point, values) in self.points.iter().zip(out.iter_mut()) {
-            panels.doublets(*point, scratch, values);
-        }
-        for t in spheres.near(self) {
-            let (d, _) = self.moments(panels, t);
-            for q in 0..3 {
-                out[q][t] = d[q];
-            }
-        }
-    }
-
-    /// As [`Self::doublets`], with S into rows of `sources`.
-    pub(crate) fn doublets_and_sources(
-        &self,
-        panels: &PanelSet,
-        spheres: &Spheres,
-        scratch: &mut PanelScratch,
-        out: &mut [Vec<CornerValues>; 3],
-        sources: &mut [&mut [CornerValues]; 3],
-    ) {
-        for ((point, d), s) in self
-            .points
+    /// Numbers of the spheres near the test triangle.
+    pub(crate) fn near<'a>(
+        &'a self,
+        spheres: &'a [(Vec3, f64)],
+    ) -> impl Iterator<Item = usize> + 'a {
+        spheres
             .iter()
-            .zip(out.iter_mut())
-            .zip(sources.iter_mut())
-        {
-            panels.doublets_and_sources(*point, scratch, d, s);
-        }
-        for t in spheres.near(self) {
-            let (d, s) = self.moments(panels, t);
-            for q in 0..3 {
-                out[q][t] = d[q];
-                sources[q][t] = s[q];
-            }
-        }
+            .enumerate()
+            .filter_map(|(t, (centre, radius))| {
+                let reach = NEAR * (radius + self.radius);
+                ((centre - self.centre).norm_squared() < reach * reach).then_some(t)
+            })
     }
 
-    /// Values at the three points with the moments of the divided triangle.
-    fn moments(&self, panels: &PanelSet, t: usize) -> ([CornerValues; 3], [CornerValues; 3]) {
-        let weight = 1.0 / self.division.points.len() as f64;
-        let mut d = [[0.0; 3]; 3];
-        let mut s = [[0.0; 3]; 3];
-        for (point, shape) in self.division.points.iter().zip(&self.division.coordinates) {
-            let (doublet, source) = panels.one(t, *point);
-            for i in 0..3 {
-                for c in 0..3 {
-                    d[i][c] += weight * shape[i] * doublet[c];
-                    s[i][c] += weight * shape[i] * source[c];
-                }
+    /// Values with the moments of the divided triangle less those at the points.
+    #[expect(
+        clippy::unused_self,
+        reason = "the values belong to this triangle's points"
+    )]
+    pub(crate) fn change(&self, values: &NearValues) -> Change {
+        Change {
+            doublets: change(&values.doublets),
+            sources: change(&values.sources),
+        }
+    }
+}
+
+fn change(corners: &[[f64; NEAR_POINTS]; 3]) -> [CornerValues; 3] {
+    let mut moments = [[0.0; 3]; 3];
+    for (f, shape) in DIVISION.iter().enumerate() {
+        for i in 0..3 {
+            for c in 0..3 {
+                moments[i][c] += shape[i] * corners[c][f] / DIVIDED as f64;
             }
         }
-        (from_moments(&d), from_moments(&s))
     }
+    let mut values = from_moments(&moments);
+    for (q, value) in values.iter_mut().enumerate() {
+        for (v, corner) in value.iter_mut().zip(corners) {
+            *v -= corner[DIVIDED + q];
+        }
+    }
+    values
 }
 
 /// D_q = 3 Σᵢ (2 δ_qi − 1/3) mᵢ.

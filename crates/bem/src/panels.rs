@@ -27,7 +27,7 @@
 use fladder_mesh::Vec3;
 use std::collections::HashMap;
 
-const INVERSE_FOUR_PI: f64 = 0.25 * std::f64::consts::FRAC_1_PI;
+pub(crate) const INVERSE_FOUR_PI: f64 = 0.25 * std::f64::consts::FRAC_1_PI;
 
 /// Distance from the plane, in longest edges, below which a point lies in it; [`ROUNDING`] is
 /// added to it.
@@ -41,32 +41,32 @@ const COPLANAR: f64 = 1e-12;
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// Smallest rₐ + r_b − l, in edge lengths; it is zero for a point on the edge.
-const EDGE_FLOOR: f64 = 1e-14;
+pub(crate) const EDGE_FLOOR: f64 = 1e-14;
 
 /// Constants of one triangle.
 #[derive(Clone, Debug)]
-struct Panel {
-    corners: [u32; 3],
+pub(crate) struct Panel {
+    pub(crate) corners: [u32; 3],
     /// Edge opposite each corner.
-    edges: [u32; 3],
-    normal: Vec3,
-    twice_area: f64,
-    coplanar: f64,
+    pub(crate) edges: [u32; 3],
+    pub(crate) normal: Vec3,
+    pub(crate) twice_area: f64,
+    pub(crate) coplanar: f64,
     /// gᵢ.
-    gradients: [Vec3; 3],
+    pub(crate) gradients: [Vec3; 3],
     /// gᵢ·mₑ.
-    slopes: [[f64; 3]; 3],
+    pub(crate) slopes: [[f64; 3]; 3],
     /// 2A/lₑ.
-    heights: [f64; 3],
+    pub(crate) heights: [f64; 3],
 }
 
 /// An edge shared by up to two triangles, so that its logarithm is taken once.
 #[derive(Clone, Debug)]
-struct SharedEdge {
-    ends: [u32; 2],
-    length: f64,
+pub(crate) struct SharedEdge {
+    pub(crate) ends: [u32; 2],
+    pub(crate) length: f64,
     /// Unit vector from the first end to the second.
-    tangent: Vec3,
+    pub(crate) tangent: Vec3,
 }
 
 impl SharedEdge {
@@ -95,7 +95,22 @@ pub(crate) fn sphere(corners: &[Vec3; 3]) -> (Vec3, f64) {
     (centre, radius)
 }
 
-/// Flat triangles prepared for evaluation at many points.
+/// Constants of triangles and of the edges they share.
+pub(crate) fn edges_of(
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+) -> (Vec<Panel>, Vec<SharedEdge>) {
+    let mut edge_index = HashMap::new();
+    let mut edges = Vec::new();
+    let panels = triangles
+        .iter()
+        .map(|&corners| Panel::new(vertices, corners, &mut edge_index, &mut edges))
+        .collect();
+    (panels, edges)
+}
+
+/// Flat triangles prepared for evaluation at many points, one after the other; the
+/// scalar twin of the blocks in which the solver evaluates them.
 #[derive(Clone, Debug)]
 pub struct PanelSet {
     vertices: Vec<Vec3>,
@@ -121,12 +136,7 @@ impl PanelSet {
     /// A triangle of zero area carries no potential and no gradient; the mesh judge
     /// refuses it before it comes here.
     pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        let mut edge_index = HashMap::new();
-        let mut edges = Vec::new();
-        let panels = triangles
-            .iter()
-            .map(|&corners| Panel::new(vertices, corners, &mut edge_index, &mut edges))
-            .collect();
+        let (panels, edges) = edges_of(vertices, triangles);
         Self {
             vertices: vertices.to_vec(),
             edges,
@@ -220,15 +230,6 @@ impl PanelSet {
             logarithms,
         });
         (panel.doublet(&foot), panel.source(&foot, source_edges))
-    }
-
-    /// Centre and radius of a sphere round one triangle.
-    pub(crate) fn sphere(&self, triangle: usize) -> (Vec3, f64) {
-        sphere(
-            &self.panels[triangle]
-                .corners
-                .map(|v| self.vertices[v as usize]),
-        )
     }
 
     fn distances_and_logarithms(&self, point: Vec3, scratch: &mut PanelScratch) {

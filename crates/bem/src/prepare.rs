@@ -2,7 +2,7 @@
 
 use crate::boundary::{ModeFields, onset_sources};
 use crate::cut::CutSurface;
-use crate::dense::{BodyOperator, DenseOperator};
+use crate::dense::{BodyOperator, DenseOperator, Factors};
 use crate::error::BemError;
 use crate::galerkin::Galerkin;
 use crate::image::Image;
@@ -37,6 +37,8 @@ pub(crate) struct Body<O> {
     pub(crate) free_terms: Vec<f64>,
     /// Potentials of the sources, without wake.
     pub(crate) potentials: Mat<f64>,
+    /// A⁻ᵀ K: what a tested influence makes of each jump at the trailing edge.
+    pub(crate) jump_adjoint: Mat<f64>,
 }
 
 impl Prepared<DenseOperator> {
@@ -63,18 +65,21 @@ impl Prepared<DenseOperator> {
         let mut flow_wake = None;
         let (body, onsets) = if flow == motion {
             let all = concatenate(&[&sources, &onset_sources(&galerkin)]);
-            let body = Body::factorise(galerkin, &all, progress)?;
+            let body = Body::factorise(galerkin, &all, &selector, problem.factors, progress)?;
             let onsets = body.steady_onsets(&wake, &selector, sources.ncols(), progress)?;
             (body, onsets)
         } else {
             let even = Galerkin::new(&surface, flow);
             let onset = onset_sources(&even);
-            let steady = Body::factorise(even, &onset, progress)?;
             let (_, even_wake) = lay_out(problem, flow)?;
+            let steady = Body::factorise(even, &onset, &selector, problem.factors, progress)?;
             let onsets = steady.steady_onsets(&even_wake, &selector, 0, progress)?;
             flow_wake = Some(even_wake);
             drop(steady);
-            (Body::factorise(galerkin, &sources, progress)?, onsets)
+            (
+                Body::factorise(galerkin, &sources, &selector, problem.factors, progress)?,
+                onsets,
+            )
         };
         let mut prepared = Self {
             surface,
@@ -104,6 +109,7 @@ impl Prepared<DenseOperator> {
                 operator: (),
                 free_terms: self.body.free_terms,
                 potentials: self.body.potentials,
+                jump_adjoint: self.body.jump_adjoint,
             },
             onsets: self.onsets,
         }
@@ -135,23 +141,23 @@ impl Body<DenseOperator> {
     fn factorise(
         galerkin: Galerkin,
         sources: &Mat<f64>,
+        selector: &Mat<f64>,
+        factors: Factors,
         progress: &dyn Progress,
     ) -> Result<Self, BemError> {
         let assembly = galerkin.assemble(sources.as_ref(), progress)?;
-        let stage = "factorising";
-        progress.stage(stage, 1);
-        let operator = DenseOperator::new(assembly.rows, galerkin.n_vertices)?;
-        progress.advance(1);
-        if progress.cancelled() {
-            return Err(BemError::Interrupted { stage });
-        }
+        let operator =
+            DenseOperator::new(assembly.rows, galerkin.n_vertices, factors, progress)?;
         let mut potentials = assembly.right_hand_sides;
-        operator.solve(&mut potentials);
+        operator.solve(&mut potentials, progress);
+        let mut jump_adjoint = selector.clone();
+        operator.solve_transpose(&mut jump_adjoint, progress);
         Ok(Self {
             galerkin,
             operator,
             free_terms: assembly.free_terms,
             potentials,
+            jump_adjoint,
         })
     }
 
@@ -172,9 +178,8 @@ impl Body<DenseOperator> {
         }
         let mut jumps = Mat::zeros(n, 3);
         if n > 0 {
-            let mut response = self.influence(wake).steady(n, progress)?;
-            self.operator.solve(&mut response);
-            let h = selector.transpose() * &response;
+            let tested = self.influence(wake).steady(n, progress)?;
+            let h = self.jump_adjoint.transpose() * &tested;
             let system = Mat::from_fn(n, n, |i, j| {
                 let unit = if i == j { 1.0 } else { 0.0 };
                 c64::new(unit - h[(i, j)], 0.0)
@@ -187,7 +192,9 @@ impl Body<DenseOperator> {
                 value: 0.0,
             })?;
             jumps = Mat::from_fn(n, 3, |i, j| solved[(i, j)].re);
-            phi += &response * &jumps;
+            let mut response = tested * &jumps;
+            self.operator.solve(&mut response, progress);
+            phi += response;
         }
         Ok(UnitOnsets::new(&self.galerkin, wake, phi, jumps))
     }

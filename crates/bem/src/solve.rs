@@ -1,8 +1,9 @@
 //! From a surface and its modes to the transfer model.
 
 use crate::cut::CutSurface;
-use crate::dense::BodyOperator;
+use crate::dense::{BodyOperator, Factors};
 use crate::error::BemError;
+use crate::galerkin::CLUSTERS_AT_ONCE;
 use crate::image::Image;
 use crate::onset::OnsetBasis;
 use crate::prepare::{Prepared, concatenate};
@@ -76,6 +77,8 @@ pub struct Problem<'a> {
     pub semichord: f64,
     /// Point about which steady moments are taken, m.
     pub moment_point: Vec3,
+    /// Precision of the factors; results are those of double precision in both.
+    pub factors: Factors,
 }
 
 impl<'a> Problem<'a> {
@@ -99,6 +102,7 @@ impl<'a> Problem<'a> {
             body_lines: &[],
             semichord,
             moment_point: Vec3::zeros(),
+            factors: Factors::default(),
         }
     }
 }
@@ -149,10 +153,16 @@ pub struct Plan {
     pub notes: Vec<String>,
 }
 
-/// Measured on one core at 4.2 GHz: see `benches/RESULTS.md`.
-const SECONDS_PER_PANEL_PAIR: f64 = 45e-9;
-const SECONDS_PER_FAR_NODE: f64 = 45e-9;
-const FLOPS_PER_SECOND: f64 = 8e10;
+/// Seconds of one core at 2.1 GHz with AVX-512; `benches/RESULTS.md` has the measurements.
+/// With sources, tested and multiplied by them.
+const SECONDS_PER_BODY_PAIR: f64 = 18e-9;
+const SECONDS_PER_WAKE_PAIR: f64 = 9e-9;
+const SECONDS_PER_FAR_NODE: f64 = 13e-9;
+const SINGLE_FLOPS_PER_SECOND: f64 = 9e10;
+const DOUBLE_FLOPS_PER_SECOND: f64 = 4e10;
+
+/// Rows of a cluster of test triangles, about.
+const ROWS_OF_A_CLUSTER: f64 = 96.0;
 
 /// Lays out the wake and counts.
 ///
@@ -181,31 +191,39 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
     let nodes =
         (wake.paths.oscillating.nodes.len() * 2 + wake.paths.decaying.nodes.len()) as f64;
     let far = images * points * sizes.wake_streamlines as f64 * nodes;
-    let pairs = images
-        * points
-        * (operators * sizes.triangles as f64 + 2.0 * sizes.wake_elements as f64);
-    let flops = operators * 2.0 / 3.0 * n.powi(3)
-        + 2.0 * n * n * (functionals + ((1 + onsets) * modes) as f64)
-        + 2.0 * points * functionals * (wake.slots.len() as f64)
-        + 4.0 * far * functionals;
-    let batch = 32.0 * 48.0 * n * 8.0;
-    let influences = 48.0 * 3.0 * sizes.triangles as f64 * 8.0 * rayon_threads();
-    let blocks = 16.0 * functionals * (wake.slots.len() as f64 * 8.0)
-        + 16.0 * functionals * (sizes.wake_streamlines as f64 * nodes * 16.0);
+    let body_pairs = images * points * operators * sizes.triangles as f64;
+    let wake_pairs = images * points * 2.0 * sizes.wake_elements as f64;
+    let solved = functionals + ((1 + onsets) * modes + 6) as f64;
+    let factorisation = operators * 2.0 / 3.0 * n.powi(3);
+    let substitution = 2.0 * n * n * solved;
+    let (matrices, algebra) = match problem.factors {
+        Factors::Refined => (
+            12.0 * n * n,
+            (factorisation + 3.0 * substitution) / SINGLE_FLOPS_PER_SECOND
+                + 2.0 * substitution / DOUBLE_FLOPS_PER_SECOND,
+        ),
+        Factors::Double => (
+            8.0 * n * n,
+            (factorisation + substitution) / DOUBLE_FLOPS_PER_SECOND,
+        ),
+    };
+    let batch = CLUSTERS_AT_ONCE as f64 * ROWS_OF_A_CLUSTER * n * 8.0;
+    let sources = 6.0 * sizes.triangles as f64 * ((1 + onsets) * modes) as f64 * 8.0;
+    let columns = wake.slots.len() as f64 + 3.0 * sizes.wake_streamlines as f64 * nodes;
     Ok(Plan {
-        memory_bytes: (n * n * 8.0 + batch + influences + blocks + n * functionals * 16.0)
-            as u64,
-        core_seconds: pairs * SECONDS_PER_PANEL_PAIR
+        memory_bytes: (matrices
+            + batch
+            + sources
+            + 16.0 * functionals * columns
+            + 24.0 * n * solved) as u64,
+        core_seconds: body_pairs * SECONDS_PER_BODY_PAIR
+            + wake_pairs * SECONDS_PER_WAKE_PAIR
             + far * SECONDS_PER_FAR_NODE
-            + flops / FLOPS_PER_SECOND,
+            + algebra,
         sizes,
         wake: wake.sheet,
         notes: wake.notes,
     })
-}
-
-fn rayon_threads() -> f64 {
-    rayon::current_num_threads() as f64
 }
 
 /// The cut surface and the wake of a problem.
@@ -235,7 +253,7 @@ fn sizes(surface: &CutSurface, wake: &Wake) -> Sizes {
         unknowns: surface.vertices.len(),
         triangles: surface.triangles.len(),
         wake_columns: surface.columns.len(),
-        wake_elements: wake.near.panels.len(),
+        wake_elements: wake.near.len(),
         wake_rows: wake.stations,
         wake_streamlines: wake.far.anchors.len(),
     }
@@ -272,8 +290,8 @@ pub(crate) fn check(problem: &Problem<'_>) -> Result<(), BemError> {
 /// Computes the transfer model and the steady flow.
 ///
 /// One real factorisation of the body operator (two for antisymmetric motion, whose steady
-/// flow is symmetric); cost O(n³) for n vertices, memory 8 n² bytes. Same bits at any
-/// number of threads.
+/// flow is symmetric); cost O(n³) for n vertices, memory 12 n² bytes, or 8 n² with
+/// [`Factors::Double`]. Same bits at any number of threads.
 ///
 /// # Errors
 /// [`BemError`]: modes that do not fit the mesh, trailing edges that allow no wake, a
@@ -287,12 +305,13 @@ pub fn solve(problem: &Problem<'_>, progress: &dyn Progress) -> Result<Solution,
         &prepared.wake,
         problem.shape_change,
     );
-    let parts: Vec<&Mat<f64>> = std::iter::once(&prepared.selector)
-        .chain(&functionals.p0)
-        .chain([&functionals.p1])
-        .collect();
+    let parts: Vec<&Mat<f64>> = functionals.p0.iter().chain([&functionals.p1]).collect();
     let mut adjoint = concatenate(&parts);
-    prepared.body.operator.solve_transpose(&mut adjoint);
+    prepared
+        .body
+        .operator
+        .solve_transpose(&mut adjoint, progress);
+    let adjoint = concatenate(&[&prepared.body.jump_adjoint, &adjoint]);
     let prepared = prepared.without_operator();
     let blocks = prepared.influence().blocks(adjoint.as_ref(), progress)?;
     let reduction = Reduction {

@@ -148,7 +148,7 @@ fn potentials(
         let value = tested[(i, j % n)];
         if j < n { value.re } else { value.im }
     });
-    body.operator.solve(&mut parts);
+    body.operator.solve(&mut parts, progress);
     let response = Mat::from_fn(tested.nrows(), n, |i, j| {
         c64::new(parts[(i, j)], parts[(i, j + n)])
     });

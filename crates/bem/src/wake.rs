@@ -11,7 +11,9 @@ use crate::cut::CutSurface;
 use crate::error::BemError;
 use crate::far_wake::FarWake;
 use crate::image::Image;
-use crate::panels::PanelSet;
+use crate::lanes::WIDTH;
+use crate::ordering::spatial_order;
+use crate::panel_block::{BLOCK, PanelBlock};
 use crate::strike::Strikes;
 use crate::wake_builder::Builder;
 use crate::wake_sheet::WakeSheet;
@@ -30,22 +32,43 @@ pub(crate) struct Slot {
 /// Triangles whose corners carry slots.
 #[derive(Clone, Debug)]
 pub(crate) struct JumpSheet {
-    pub(crate) panels: PanelSet,
+    /// Close triangles together; a block's columns are slots.
+    pub(crate) blocks: Vec<PanelBlock>,
     pub(crate) corner_slots: Vec<[u32; 3]>,
     /// Triangles of the body under them; empty for the free sheet.
     pub(crate) body_triangles: Vec<u32>,
 }
 
 impl JumpSheet {
-    /// Adds sign × corner values to their slots.
-    pub(crate) fn gather(&self, corners: &[[f64; 3]], sign: f64, out: &mut [f64]) {
-        for (values, slots) in corners.iter().zip(&self.corner_slots) {
-            for (value, &slot) in values.iter().zip(slots) {
-                if slot != NO_SLOT {
-                    out[slot as usize] += sign * value;
-                }
-            }
+    /// Triangles given by vertex indices, and the slot of each corner.
+    pub(crate) fn new(
+        vertices: &[Vec3],
+        triangles: &[[u32; 3]],
+        corner_slots: Vec<[u32; 3]>,
+        body_triangles: Vec<u32>,
+    ) -> Self {
+        let centres: Vec<Vec3> = triangles
+            .iter()
+            .map(|t| t.iter().map(|&v| vertices[v as usize]).sum::<Vec3>() / 3.0)
+            .collect();
+        let slot = |t: u32, c: usize| {
+            let slot = corner_slots[t as usize][c];
+            (slot != NO_SLOT).then_some(slot)
+        };
+        let blocks = spatial_order(&centres, BLOCK, WIDTH)
+            .chunks(BLOCK)
+            .map(|which| PanelBlock::new(vertices, triangles, which, slot))
+            .collect();
+        Self {
+            blocks,
+            corner_slots,
+            body_triangles,
         }
+    }
+
+    /// Number of triangles.
+    pub(crate) fn len(&self) -> usize {
+        self.corner_slots.len()
     }
 }
 

@@ -14,7 +14,6 @@ use crate::cut::{CutSurface, Jump};
 use crate::error::BemError;
 use crate::far_wake::FarWake;
 use crate::image::mirrored;
-use crate::panels::PanelSet;
 use crate::sheet_lines::{Layer, SheetLine, Source};
 use crate::stations::{RowLaw, stations};
 use crate::strike::Strikes;
@@ -332,16 +331,18 @@ impl<'a> Builder<'a> {
         Wake {
             threads: self.threads,
             slots: self.slots,
-            near: JumpSheet {
-                panels: PanelSet::new(&self.sheet.vertices, &self.sheet.triangles),
-                corner_slots: self.sheet.corner_slots(),
-                body_triangles: Vec::new(),
-            },
-            body: JumpSheet {
-                panels: PanelSet::compact(&self.mesh.vertices, &body_panels),
-                corner_slots: body.into_iter().map(|(_, slots)| slots).collect(),
+            near: JumpSheet::new(
+                &self.sheet.vertices,
+                &self.sheet.triangles,
+                self.sheet.corner_slots(),
+                Vec::new(),
+            ),
+            body: JumpSheet::new(
+                &self.mesh.vertices,
+                &body_panels,
+                body.into_iter().map(|(_, slots)| slots).collect(),
                 body_triangles,
-            },
+            ),
             far: self.far,
             far_threads: self.far_threads,
             paths: Paths::new(start, self.margin, reach),

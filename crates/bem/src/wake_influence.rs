@@ -1,23 +1,24 @@
 //! The wake's influence at the test points, tested and contracted on the fly.
 //!
-//! Nothing of size points × wake is kept: a task evaluates its test points and leaves
-//! either rows summed over the wake (steady) or small blocks Lᵀ T W (reduced model).
+//! Nothing of size points × wake is kept. The wake is evaluated tile by tile, a block of
+//! the near sheet's triangles ([`crate::tiles`]) or of the far wake's strips
+//! ([`crate::far_tiles`]) against a cluster of test triangles, and leaves either rows
+//! summed over the wake (steady, or at one s) or small blocks Lᵀ T W (reduced model).
 
-use crate::contour::Path;
+use crate::contour::{Path, Paths};
 use crate::error::BemError;
+use crate::far_tiles::{FarBlock, FarScratch};
 use crate::galerkin::Galerkin;
-use crate::near_field::{POINTS, Spheres, TestTriangle};
-use crate::panels::{CornerValues, PanelScratch};
+use crate::lanes::WIDTH;
+use crate::near_field::POINTS;
 use crate::progress::Progress;
-use crate::wake::Wake;
+use crate::tiles::{TestCluster, Tile, TileScratch};
+use crate::wake::{JumpSheet, Slot, Wake};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par, c64};
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::ops::{AddAssign, Mul};
-
-/// Parts into which the test points are divided; each sums by itself and the parts are
-/// added in order, so that the number of threads does not change a bit.
-const PARTS: usize = 16;
 
 /// Influence of every slot, and of every far streamline at every node.
 pub(crate) struct WakeBlocks {
@@ -42,10 +43,22 @@ impl WakeInfluence<'_> {
         columns: usize,
         progress: &dyn Progress,
     ) -> Result<Mat<f64>, BemError> {
-        let path = &self.wake.paths.oscillating;
-        self.tested_rows(columns, progress, |evaluator, t, q, out| {
-            evaluator.steady_row(t, q, path, out);
-        })
+        let mut rows = self.near_rows(columns, |_| 1.0, progress)?;
+        let far = self.far_rows(c64::new(0.0, 0.0), columns, progress)?;
+        rows += Mat::from_fn(far.nrows(), columns, |i, j| far[(i, j)].re);
+        Ok(rows)
+    }
+
+    /// T W(s): test functions × columns.
+    pub(crate) fn tested(
+        &self,
+        s: c64,
+        columns: usize,
+        progress: &dyn Progress,
+    ) -> Result<Mat<c64>, BemError> {
+        let mut rows = self.near_rows(columns, |slot| (-s * slot.xi).exp(), progress)?;
+        rows += self.far_rows(s, columns, progress)?;
+        Ok(rows)
     }
 
     /// Contracts the wake with functionals given on the vertices: `left` has one
@@ -56,344 +69,321 @@ impl WakeInfluence<'_> {
         progress: &dyn Progress,
     ) -> Result<WakeBlocks, BemError> {
         let stage = "contracting the wake";
-        let n_triangles = self.galerkin.n_triangles();
-        progress.stage(stage, n_triangles as u64);
-        let size = n_triangles.div_ceil(PARTS);
-        let parts: Vec<WakeBlocks> = (0..PARTS)
-            .into_par_iter()
-            .map(|part| {
-                let range =
-                    (part * size).min(n_triangles)..((part + 1) * size).min(n_triangles);
-                self.part(range, left, progress)
+        let (wake, clusters) = (self.wake, &self.galerkin.clusters);
+        let lefts: Vec<Mat<f64>> = clusters
+            .par_iter()
+            .map(|c| {
+                Mat::from_fn(left.ncols(), c.rows.len(), |f, r| {
+                    left[(c.rows[r] as usize, f)]
+                })
             })
             .collect();
-        if progress.cancelled() {
-            return Err(BemError::Interrupted { stage });
-        }
-        let mut parts = parts.into_iter();
-        let mut total = parts.next().expect("there is at least one part");
-        for part in parts {
-            total.near += part.near;
-            for (sum, far) in total.far.iter_mut().zip(part.far) {
-                *sum += far;
-            }
-        }
-        Ok(total)
-    }
-
-    fn part(
-        &self,
-        range: std::ops::Range<usize>,
-        left: MatRef<'_, f64>,
-        progress: &dyn Progress,
-    ) -> WakeBlocks {
-        let functionals = left.ncols();
-        let paths = [&self.wake.paths.oscillating, &self.wake.paths.decaying];
-        let lines = self.wake.far.anchors.len();
-        let mut blocks = WakeBlocks {
-            near: Mat::zeros(functionals, self.wake.slots.len()),
-            far: paths
-                .map(|p| Mat::zeros(functionals, 2 * lines * p.nodes.len()))
-                .to_vec(),
-        };
-        let mut evaluator = Evaluator::new(self);
-        for first in range.clone().step_by(crate::galerkin::TASK_TRIANGLES) {
-            if progress.cancelled() {
-                return blocks;
-            }
-            let triangles = first..(first + crate::galerkin::TASK_TRIANGLES).min(range.end);
-            self.contract(triangles.clone(), left, &mut evaluator, &mut blocks);
-            progress.advance(triangles.len() as u64);
-        }
-        blocks
-    }
-
-    fn contract(
-        &self,
-        triangles: std::ops::Range<usize>,
-        left: MatRef<'_, f64>,
-        evaluator: &mut Evaluator<'_>,
-        blocks: &mut WakeBlocks,
-    ) {
-        let n_points = 3 * triangles.len();
-        let slots = self.wake.slots.len();
-        let paths = [&self.wake.paths.oscillating, &self.wake.paths.decaying];
-        let lines = self.wake.far.anchors.len();
-        let mut tested = Mat::<f64>::zeros(left.ncols(), n_points);
-        let mut near = vec![0.0; n_points * slots];
-        let mut far = paths.map(|p| vec![0.0; 2 * n_points * lines * p.nodes.len()]);
-        for (i, t) in triangles.enumerate() {
-            evaluator.near(t);
-            for q in 0..3 {
-                let p = 3 * i + q;
-                for (corner, &v) in self.galerkin.triangles[t].iter().enumerate() {
-                    let weight = self.galerkin.test_weight(t, q, corner);
-                    for f in 0..left.ncols() {
-                        tested[(f, p)] += weight * left[(v as usize, f)];
-                    }
-                }
-                near[p * slots..(p + 1) * slots].copy_from_slice(&evaluator.slots[q]);
-                for (path, out) in paths.iter().zip(&mut far) {
-                    let width = 2 * lines * path.nodes.len();
-                    evaluator.far_parts(t, q, path, &mut out[p * width..(p + 1) * width]);
-                }
-            }
-        }
-        let near = MatRef::from_column_major_slice(&near, slots, n_points);
-        matmul(
-            &mut blocks.near,
-            Accum::Add,
-            &tested,
-            near.transpose(),
-            1.0,
-            Par::Seq,
+        let mut near = Mat::<f64>::zeros(left.ncols(), wake.slots.len());
+        progress.stage(
+            stage,
+            (wake.near.blocks.len() + wake.body.blocks.len()) as u64,
         );
-        for ((block, values), path) in blocks.far.iter_mut().zip(&far).zip(paths) {
-            let width = 2 * lines * path.nodes.len();
-            let values = MatRef::from_column_major_slice(values, width, n_points);
-            matmul(
-                block,
-                Accum::Add,
-                &tested,
-                values.transpose(),
-                1.0,
-                Par::Seq,
-            );
+        for sheet in [&wake.near, &wake.body] {
+            let own = OwnTriangles::new(sheet);
+            let parts: Vec<Mat<f64>> = (0..sheet.blocks.len())
+                .into_par_iter()
+                .map_init(Working::default, |working, b| {
+                    let block = &sheet.blocks[b];
+                    let mut sum = Mat::zeros(left.ncols(), block.columns.len());
+                    for (cluster, left) in clusters.iter().zip(&lefts) {
+                        if progress.cancelled() {
+                            break;
+                        }
+                        let tile = self.tile(sheet, b, cluster, &own, working);
+                        let tile = MatRef::from_row_major_slice(
+                            tile,
+                            cluster.rows.len(),
+                            block.places(),
+                        )
+                        .subcols(0, block.columns.len());
+                        matmul(&mut sum, Accum::Add, left, tile, 1.0, Par::Seq);
+                    }
+                    progress.advance(1);
+                    sum
+                })
+                .collect();
+            if progress.cancelled() {
+                return Err(BemError::Interrupted { stage });
+            }
+            for (block, part) in sheet.blocks.iter().zip(parts) {
+                for (c, &slot) in block.columns.iter().enumerate() {
+                    let mut column = near.col_mut(slot as usize);
+                    column += part.col(c);
+                }
+            }
         }
+        Ok(WakeBlocks {
+            near,
+            far: self.far_blocks(&lefts, left.ncols(), progress)?,
+        })
     }
-}
 
-impl WakeInfluence<'_> {
-    /// T W(s): test functions × columns.
-    pub(crate) fn tested(
+    /// Lᵀ T W of every far streamline and node, one matrix a path; `lefts` are L's rows of
+    /// each cluster, transposed.
+    fn far_blocks(
+        &self,
+        lefts: &[Mat<f64>],
+        functionals: usize,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Mat<f64>>, BemError> {
+        let stage = "contracting the far wake";
+        let wake = self.wake;
+        let blocks = FarBlock::of(&wake.far);
+        progress.stage(stage, 2 * blocks.len() as u64);
+        let mut far = Vec::new();
+        for path in [&wake.paths.oscillating, &wake.paths.decaying] {
+            let parts: Vec<Mat<f64>> = blocks
+                .par_iter()
+                .map_init(FarScratch::default, |scratch, block| {
+                    let columns = block.columns(path.nodes.len());
+                    let mut sum = Mat::zeros(functionals, columns);
+                    for (cluster, left) in self.galerkin.clusters.iter().zip(lefts) {
+                        if progress.cancelled() {
+                            break;
+                        }
+                        let tile = scratch.tile(cluster, block, &path.nodes);
+                        let height = cluster.rows.len();
+                        let tile = MatRef::from_row_major_slice(tile, height, columns);
+                        matmul(&mut sum, Accum::Add, left, tile, 1.0, Par::Seq);
+                    }
+                    progress.advance(1);
+                    sum
+                })
+                .collect();
+            if progress.cancelled() {
+                return Err(BemError::Interrupted { stage });
+            }
+            let lines = wake.far.anchors.len();
+            let mut total = Mat::zeros(functionals, 2 * lines * path.nodes.len());
+            for (block, part) in blocks.iter().zip(&parts) {
+                add_weighted(path, block, part, &mut total);
+            }
+            far.push(total);
+        }
+        Ok(far)
+    }
+
+    /// Test functions × columns of the far wake at s.
+    fn far_rows(
         &self,
         s: c64,
         columns: usize,
         progress: &dyn Progress,
     ) -> Result<Mat<c64>, BemError> {
-        let path = self.wake.paths.of(s);
-        self.tested_rows(columns, progress, |evaluator, t, q, out| {
-            evaluator.row(t, q, s, path, out);
-        })
-    }
-
-    /// Test functions × columns of rows that `fill` gives at each of a triangle's points.
-    fn tested_rows<T>(
-        &self,
-        columns: usize,
-        progress: &dyn Progress,
-        fill: impl Fn(&mut Evaluator<'_>, usize, usize, &mut [T]) + Sync,
-    ) -> Result<Mat<T>, BemError>
-    where
-        T: Copy + Default + Send + AddAssign + Mul<f64, Output = T>,
-    {
-        let stage = "evaluating the wake";
-        let n_triangles = self.galerkin.n_triangles();
-        progress.stage(stage, n_triangles as u64);
-        let rows: Vec<Vec<T>> = (0..n_triangles)
-            .into_par_iter()
-            .map_init(
-                || Evaluator::new(self),
-                |evaluator, t| {
+        let stage = "evaluating the far wake";
+        let (wake, clusters) = (self.wake, &self.galerkin.clusters);
+        let path = [&wake.paths.oscillating, &wake.paths.decaying][Paths::number_of(s)];
+        let decays: Vec<c64> = path
+            .nodes
+            .iter()
+            .zip(&path.weights)
+            .map(|(xi, weight)| weight * (-s * xi).exp())
+            .collect();
+        let blocks = FarBlock::of(&wake.far);
+        progress.stage(stage, clusters.len() as u64);
+        let parts: Vec<Mat<c64>> = clusters
+            .par_iter()
+            .map_init(FarScratch::default, |scratch, cluster| {
+                let height = cluster.rows.len();
+                let mut out = Mat::zeros(height, columns);
+                for block in &blocks {
                     if progress.cancelled() {
-                        return Vec::new();
+                        return out;
                     }
-                    let mut out = vec![T::default(); 3 * columns];
-                    evaluator.near(t);
-                    for (q, part) in out.chunks_exact_mut(columns).enumerate() {
-                        fill(evaluator, t, q, part);
+                    let tile = scratch.summed_tile(cluster, block, &path.nodes, &decays);
+                    for (r, row) in tile.chunks_exact(block.columns(1)).enumerate() {
+                        for (value, &line) in row.chunks_exact(2).zip(&block.lines) {
+                            let value = c64::new(value[0], value[1]);
+                            for &(column, weight) in
+                                &wake.threads[wake.far_threads[line as usize]]
+                            {
+                                out[(r, column)] += weight * value;
+                            }
+                        }
                     }
-                    progress.advance(1);
-                    out
-                },
-            )
+                }
+                progress.advance(1);
+                out
+            })
             .collect();
         if progress.cancelled() {
             return Err(BemError::Interrupted { stage });
         }
-        let mut tested = Mat::from_fn(self.galerkin.n_vertices, columns, |_, _| T::default());
-        for (t, row) in rows.iter().enumerate() {
-            for (q, values) in row.chunks_exact(columns).enumerate() {
-                for (corner, &v) in self.galerkin.triangles[t].iter().enumerate() {
-                    let weight = self.galerkin.test_weight(t, q, corner);
-                    for (c, &value) in values.iter().enumerate() {
-                        tested[(v as usize, c)] += value * weight;
+        let mut rows = Mat::zeros(self.galerkin.n_vertices, columns);
+        for (cluster, part) in clusters.iter().zip(&parts) {
+            for (r, &v) in cluster.rows.iter().enumerate() {
+                for c in 0..columns {
+                    rows[(v as usize, c)] += part[(r, c)];
+                }
+            }
+        }
+        Ok(rows)
+    }
+
+    /// Tested influence of one block of a sheet: rows × places, by rows.
+    fn tile<'w>(
+        &self,
+        sheet: &JumpSheet,
+        block: usize,
+        cluster: &TestCluster,
+        own: &OwnTriangles,
+        working: &'w mut Working,
+    ) -> &'w [f64] {
+        let panels = &sheet.blocks[block];
+        working.sums.clear();
+        working.sums.resize(cluster.groups.len(), [[0.0; WIDTH]; 3]);
+        working.scratch.fill(
+            self.galerkin,
+            cluster,
+            panels,
+            false,
+            &mut working.tile,
+            &mut working.sums,
+        );
+        self.subtract_free_terms(sheet, block, cluster, own, &mut working.tile.doublets);
+        &working.tile.doublets
+    }
+
+    /// −c N^up where the points lie on a triangle whose corners carry jumps.
+    fn subtract_free_terms(
+        &self,
+        sheet: &JumpSheet,
+        block: usize,
+        cluster: &TestCluster,
+        own: &OwnTriangles,
+        tile: &mut [f64],
+    ) {
+        let panels = &sheet.blocks[block];
+        if sheet.body_triangles.is_empty() {
+            return;
+        }
+        for group in &cluster.groups {
+            for (lane, &t) in group.triangles.iter().enumerate() {
+                for &(_, panel) in own.of(t).iter().filter(|(b, _)| *b == block) {
+                    for (weights, places) in group.weights.iter().zip(&group.rows) {
+                        for corner in 0..3 {
+                            let sum: f64 = (0..3)
+                                .map(|q| {
+                                    let free = self.free_terms[3 * t as usize + q];
+                                    weights[q][lane] * free * POINTS[q][corner]
+                                })
+                                .sum();
+                            let place = panels.place(panel, corner);
+                            tile[places[lane] as usize * panels.places() + place] -= sum;
+                        }
                     }
                 }
             }
         }
-        Ok(tested)
+    }
+
+    /// Test functions × columns of the near sheet, each slot with a weight.
+    fn near_rows<T>(
+        &self,
+        columns: usize,
+        weight: impl Fn(&Slot) -> T,
+        progress: &dyn Progress,
+    ) -> Result<Mat<T>, BemError>
+    where
+        T: Copy + Default + Send + Sync + AddAssign + Mul<f64, Output = T>,
+    {
+        let stage = "evaluating the wake";
+        let (wake, clusters) = (self.wake, &self.galerkin.clusters);
+        let weights: Vec<T> = wake.slots.iter().map(weight).collect();
+        let sheets = [&wake.near, &wake.body].map(|sheet| (sheet, OwnTriangles::new(sheet)));
+        progress.stage(stage, clusters.len() as u64);
+        let parts: Vec<Vec<T>> = clusters
+            .par_iter()
+            .map_init(Working::default, |working, cluster| {
+                let height = cluster.rows.len();
+                let mut out = vec![T::default(); height * columns];
+                for (sheet, own) in &sheets {
+                    for (b, block) in sheet.blocks.iter().enumerate() {
+                        if progress.cancelled() {
+                            return out;
+                        }
+                        let tile = self.tile(sheet, b, cluster, own, working);
+                        for (place, &slot) in block.columns.iter().enumerate() {
+                            let slot = slot as usize;
+                            let values = tile.iter().skip(place).step_by(block.places());
+                            for &(column, share) in &wake.threads[wake.slots[slot].thread] {
+                                let factor = weights[slot] * share;
+                                let out = &mut out[column * height..(column + 1) * height];
+                                for (o, v) in out.iter_mut().zip(values.clone()) {
+                                    *o += factor * *v;
+                                }
+                            }
+                        }
+                    }
+                }
+                progress.advance(1);
+                out
+            })
+            .collect();
+        if progress.cancelled() {
+            return Err(BemError::Interrupted { stage });
+        }
+        let mut rows = Mat::from_fn(self.galerkin.n_vertices, columns, |_, _| T::default());
+        for (cluster, part) in clusters.iter().zip(&parts) {
+            let height = cluster.rows.len();
+            for (r, &v) in cluster.rows.iter().enumerate() {
+                for c in 0..columns {
+                    rows[(v as usize, c)] += part[c * height + r];
+                }
+            }
+        }
+        Ok(rows)
+    }
+}
+
+/// Adds a block's columns, times the weights of the path, to those of its streamlines.
+fn add_weighted(path: &Path, block: &FarBlock, part: &Mat<f64>, total: &mut Mat<f64>) {
+    let n = path.nodes.len();
+    for (i, &line) in block.lines.iter().enumerate() {
+        for (node, weight) in path.weights.iter().enumerate() {
+            let (from, to) = (2 * (i * n + node), 2 * (line as usize * n + node));
+            for f in 0..part.nrows() {
+                let value = c64::new(part[(f, from)], part[(f, from + 1)]) * weight;
+                total[(f, to)] += value.re;
+                total[(f, to + 1)] += value.im;
+            }
+        }
     }
 }
 
 /// Working space of one thread.
-struct Evaluator<'a> {
-    of: &'a WakeInfluence<'a>,
-    near_spheres: Spheres,
-    near_scratch: PanelScratch,
-    near_values: [Vec<CornerValues>; 3],
-    body_spheres: Spheres,
-    body_scratch: PanelScratch,
-    body_values: [Vec<CornerValues>; 3],
-    /// Influence of every slot at the three points of the triangle last asked for.
-    slots: [Vec<f64>; 3],
-    distances: Vec<c64>,
-    lines: Vec<c64>,
-    image_far: Vec<c64>,
+#[derive(Default)]
+struct Working {
+    scratch: TileScratch,
+    tile: Tile,
+    sums: Vec<crate::tiles::PointValues>,
 }
 
-impl<'a> Evaluator<'a> {
-    fn new(of: &'a WakeInfluence<'a>) -> Self {
-        let wake = of.wake;
-        let values = |n: usize| std::array::from_fn(|_| vec![[0.0; 3]; n]);
-        Self {
-            of,
-            near_spheres: Spheres::new(&wake.near.panels),
-            near_scratch: wake.near.panels.scratch(),
-            near_values: values(wake.near.panels.len()),
-            body_spheres: Spheres::new(&wake.body.panels),
-            body_scratch: wake.body.panels.scratch(),
-            body_values: values(wake.body.panels.len()),
-            slots: std::array::from_fn(|_| vec![0.0; wake.slots.len()]),
-            distances: Vec::new(),
-            lines: Vec::new(),
-            image_far: Vec::new(),
-        }
-    }
+/// Where a triangle of the body is in a sheet on it: block and place; once for each jump
+/// that a corner carries.
+struct OwnTriangles(HashMap<u32, Vec<(usize, usize)>>);
 
-    /// Influence of every slot at the points of one triangle: free sheet, and on bodies
-    /// D^up − c N^up of the corners that carry a jump; the image's sheet with its sign.
-    fn near(&mut self, triangle: usize) {
-        let galerkin = self.of.galerkin;
-        for out in &mut self.slots {
-            out.fill(0.0);
-        }
-        self.seen_from(&galerkin.tests[triangle], Some(triangle), 1.0);
-        if let Some(sign) = galerkin.image.sign() {
-            self.seen_from(&galerkin.image_tests[triangle], None, sign);
-        }
-    }
-
-    /// Adds sign × the influence of the sheets; `own` is the triangle where c N^up acts.
-    fn seen_from(&mut self, test: &TestTriangle, own: Option<usize>, sign: f64) {
-        let wake = self.of.wake;
-        test.doublets(
-            &wake.near.panels,
-            &self.near_spheres,
-            &mut self.near_scratch,
-            &mut self.near_values,
-        );
-        test.doublets(
-            &wake.body.panels,
-            &self.body_spheres,
-            &mut self.body_scratch,
-            &mut self.body_values,
-        );
-        if let Some(triangle) = own {
-            self.subtract_free_term(triangle);
-        }
-        for (q, out) in self.slots.iter_mut().enumerate() {
-            wake.near.gather(&self.near_values[q], sign, out);
-            wake.body.gather(&self.body_values[q], sign, out);
-        }
-    }
-
-    /// −c N^up where the points lie on a triangle whose corners carry jumps.
-    fn subtract_free_term(&mut self, triangle: usize) {
-        // A triangle is there once for each jump that a corner carries.
-        let carrying = &self.of.wake.body.body_triangles;
-        let first = carrying.partition_point(|&t| (t as usize) < triangle);
-        let same = carrying[first..]
-            .iter()
-            .take_while(|&&t| t as usize == triangle)
-            .count();
-        for (q, values) in self.body_values.iter_mut().enumerate() {
-            let free = self.of.free_terms[3 * triangle + q];
-            for corners in &mut values[first..first + same] {
-                for (value, shape) in corners.iter_mut().zip(&POINTS[q]) {
-                    *value -= free * shape;
+impl OwnTriangles {
+    fn new(sheet: &JumpSheet) -> Self {
+        let mut map: HashMap<u32, Vec<(usize, usize)>> = HashMap::new();
+        if !sheet.body_triangles.is_empty() {
+            for (b, block) in sheet.blocks.iter().enumerate() {
+                for (p, &t) in block.triangles.iter().enumerate() {
+                    map.entry(sheet.body_triangles[t as usize])
+                        .or_default()
+                        .push((b, p));
                 }
             }
         }
+        Self(map)
     }
 
-    /// Influence of every streamline at every node of a path.
-    fn far_row(&mut self, triangle: usize, q: usize, path: &Path, out: &mut [c64]) {
-        let galerkin = self.of.galerkin;
-        let far = &self.of.wake.far;
-        let point = galerkin.tests[triangle].points[q];
-        far.influence(point, &path.nodes, &path.weights, &mut self.distances, out);
-        if let Some(sign) = galerkin.image.sign() {
-            let point = galerkin.image_tests[triangle].points[q];
-            self.image_far.resize(out.len(), c64::new(0.0, 0.0));
-            far.influence(
-                point,
-                &path.nodes,
-                &path.weights,
-                &mut self.distances,
-                &mut self.image_far,
-            );
-            for (value, image) in out.iter_mut().zip(&self.image_far) {
-                *value += sign * image;
-            }
-        }
-    }
-
-    /// As [`Self::far_row`], real and imaginary parts beside each other.
-    fn far_parts(&mut self, triangle: usize, q: usize, path: &Path, out: &mut [f64]) {
-        let mut lines = std::mem::take(&mut self.lines);
-        lines.resize(out.len() / 2, c64::new(0.0, 0.0));
-        self.far_row(triangle, q, path, &mut lines);
-        for (pair, value) in out.chunks_exact_mut(2).zip(&lines) {
-            pair.copy_from_slice(&[value.re, value.im]);
-        }
-        self.lines = lines;
-    }
-
-    /// Influence of every column at s = 0 at one point of the triangle last asked for.
-    fn steady_row(&mut self, triangle: usize, q: usize, path: &Path, out: &mut [f64]) {
-        let wake = self.of.wake;
-        for (slot, value) in wake.slots.iter().zip(&self.slots[q]) {
-            for &(column, weight) in &wake.threads[slot.thread] {
-                out[column] += weight * value;
-            }
-        }
-        let n = path.nodes.len();
-        let mut lines = std::mem::take(&mut self.lines);
-        lines.resize(wake.far.anchors.len() * n, c64::new(0.0, 0.0));
-        self.far_row(triangle, q, path, &mut lines);
-        for (values, &thread) in lines.chunks_exact(n).zip(&wake.far_threads) {
-            let sum: f64 = values.iter().map(|v| v.re).sum();
-            for &(column, weight) in &wake.threads[thread] {
-                out[column] += weight * sum;
-            }
-        }
-        self.lines = lines;
-    }
-
-    /// Influence of every column at s at one point of the triangle last asked for.
-    fn row(&mut self, triangle: usize, q: usize, s: c64, path: &Path, out: &mut [c64]) {
-        let wake = self.of.wake;
-        for (slot, value) in wake.slots.iter().zip(&self.slots[q]) {
-            let decay = (-s * slot.xi).exp();
-            for &(column, weight) in &wake.threads[slot.thread] {
-                out[column] += weight * value * decay;
-            }
-        }
-        let n = path.nodes.len();
-        let mut lines = std::mem::take(&mut self.lines);
-        lines.resize(wake.far.anchors.len() * n, c64::new(0.0, 0.0));
-        self.far_row(triangle, q, path, &mut lines);
-        for (values, &thread) in lines.chunks_exact(n).zip(&wake.far_threads) {
-            let sum: c64 = values
-                .iter()
-                .zip(&path.nodes)
-                .map(|(value, xi)| value * (-s * xi).exp())
-                .sum();
-            for &(column, weight) in &wake.threads[thread] {
-                out[column] += weight * sum;
-            }
-        }
-        self.lines = lines;
+    fn of(&self, triangle: u32) -> &[(usize, usize)] {
+        self.0.get(&triangle).map_or(&[], Vec::as_slice)
     }
 }

@@ -39,6 +39,10 @@ pub(crate) struct Common {
     /// Number of threads [default: all cores]
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub(crate) threads: Option<u16>,
+    /// Factorise in double precision instead of single precision refined twice; the same
+    /// as --set gaf.exact=true
+    #[arg(long, global = true)]
+    pub(crate) exact: bool,
     /// Print neither progress nor tables
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
@@ -212,7 +216,10 @@ fn run(cli: Cli) -> Result<(), Failure> {
     // Work is divided over threads outside of matrix operations; inside, another division
     // would change the last bits of a decomposition with the number of threads.
     faer::set_global_parallelism(faer::Par::Seq);
-    let common = cli.common;
+    let mut common = cli.common;
+    if common.exact {
+        common.set.push("gaf.exact=true".to_owned());
+    }
     if let Some(threads) = common.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(usize::from(threads))

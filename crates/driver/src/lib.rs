@@ -21,6 +21,7 @@ mod figures;
 pub mod files;
 pub mod gaf_json;
 pub mod json;
+mod memory;
 pub mod plot;
 mod report;
 mod terminal;

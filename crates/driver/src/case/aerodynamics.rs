@@ -233,6 +233,9 @@ pub struct Gaf {
     pub g: Vec<f64>,
     /// Generalised forces from elsewhere, one file a Mach number.
     pub file: Option<OneOrMany<PathBuf>>,
+    /// Factorise in double precision, instead of single precision refined twice.
+    #[serde(default)]
+    pub exact: bool,
 }
 
 fn only_zero() -> Vec<f64> {

@@ -91,6 +91,7 @@ pub(crate) const KEYS: &[&str] = &[
     "gaf.k",
     "gaf.g",
     "gaf.file",
+    "gaf.exact",
     "stability.speed.from",
     "stability.speed.to",
     "stability.speed.count",

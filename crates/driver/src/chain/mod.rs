@@ -5,7 +5,6 @@ pub(crate) mod control;
 pub(crate) mod derivatives;
 pub(crate) mod exact;
 pub(crate) mod forces;
-pub(crate) mod memory;
 pub(crate) mod own_forces;
 pub(crate) mod smooth;
 pub(crate) mod structure;

@@ -4,22 +4,21 @@
 //! one incidence; grids of $(g, k)$ are views of it.
 
 use super::aircraft::Aircraft;
-use super::memory::{bytes_in_words, usable_bytes};
 use crate::cache::{Cache, Key, KeyBuilder, Stored};
 use crate::case::{self, CaseFile, WakeDirection};
 use crate::failure::Failure;
 use crate::gaf_json::{self, Document, Frame, Sample};
-use crate::terminal::{Bar, Console, warn};
+use crate::memory::{bytes_in_words, usable_bytes};
+use crate::terminal::{Bar, Console, Effort, warn};
 use faer::c64;
 use fladder_bem::{BemError, Flow, LaplaceError, Plan, Problem, Solution};
 use fladder_mesh::Vec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::time::{Duration, Instant};
 
 /// Word of meaning of stored forces. It changes when the same inputs would
 /// give other numbers, or when the layout of what is stored changes.
-const MEANING: &str = "gaf/2";
+const MEANING: &str = "gaf/3";
 
 /// An entry of the cache.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -46,10 +45,10 @@ impl Stored for StoredForces {
 }
 
 /// How the forces were come by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Origin {
     Cache,
-    Computed(Duration),
+    Computed(Effort),
 }
 
 /// Forces with their place in the cache.
@@ -80,6 +79,11 @@ pub(crate) fn problem<'a>(file: &CaseFile, aircraft: &'a Aircraft) -> Problem<'a
         body_lines: &aircraft.surface.body_lines,
         moment_point: Vec3::from(case.reference.moment_point),
         symmetry: aircraft.surface.symmetry,
+        factors: if case.gaf.exact {
+            fladder_bem::Factors::Double
+        } else {
+            fladder_bem::Factors::Refined
+        },
         ..Problem::new(
             &aircraft.surface.mesh,
             &aircraft.surface.trailing_edges,
@@ -122,6 +126,9 @@ pub(crate) fn key(file: &CaseFile, problem: &Problem<'_>) -> Key {
     // A whole model has the key it had before there were halves.
     if problem.symmetry.is_half() {
         builder = builder.field("symmetry", problem.symmetry.word().as_bytes());
+    }
+    if problem.factors == fladder_bem::Factors::Double {
+        builder = builder.field("factors", b"double");
     }
     if problem.shape_change == fladder_bem::ShapeChange::Exact {
         builder = builder.field("shape change", b"exact");
@@ -192,11 +199,10 @@ pub(crate) fn obtain(
         bytes_in_words(plan.memory_bytes),
         seconds.max(1.0)
     ));
-    let start = Instant::now();
     let bar = Bar::new(console.is_quiet());
     let solution =
         fladder_bem::solve(&problem, &bar).map_err(|error| unsolved(file, &error))?;
-    bar.clear();
+    let effort = bar.effort();
     let stored = StoredForces {
         mach: file.case.flow.mach,
         alpha_deg: file.case.flow.alpha_deg,
@@ -208,7 +214,7 @@ pub(crate) fn obtain(
     }
     Ok(OwnForces {
         key,
-        origin: Origin::Computed(start.elapsed()),
+        origin: Origin::Computed(effort),
         stored,
     })
 }

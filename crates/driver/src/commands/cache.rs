@@ -3,10 +3,10 @@
 use super::Session;
 use crate::cache::{Cache, Listed};
 use crate::case::CaseFile;
-use crate::chain::memory::bytes_in_words;
 use crate::chain::own_forces::StoredForces;
 use crate::cli::CacheAction;
 use crate::failure::{Failure, Kind};
+use crate::memory::bytes_in_words;
 use crate::report;
 use crate::terminal::{Align, Table};
 use std::path::{Path, PathBuf};

@@ -3,10 +3,10 @@
 use super::Session;
 use crate::case::CaseFile;
 use crate::chain::aircraft::Aircraft;
-use crate::chain::memory::{bytes_in_words, usable_bytes};
 use crate::chain::own_forces;
 use crate::chain::surface::{Surface, Wanted, refusal};
 use crate::failure::Failure;
+use crate::memory::{bytes_in_words, usable_bytes};
 use crate::report::{self, EdgeEnd};
 use fladder_bem::{Plan, Problem, WakeSheet};
 use fladder_mesh::Symmetry;

@@ -2,12 +2,12 @@
 
 use crate::case::CaseFile;
 use crate::chain::aircraft::Aircraft;
-use crate::chain::memory::bytes_in_words;
 use crate::chain::own_forces::{Origin, OwnForces};
 use crate::chain::sweep::density;
 use crate::figures::fixed;
 use crate::gaf_json::Sample;
-use crate::terminal::{Align, Console, Table};
+use crate::memory::bytes_in_words;
+use crate::terminal::{Align, Console, Effort, Table};
 use fladder_bem::SteadyState;
 
 /// Larger matrices are for files.
@@ -23,11 +23,11 @@ pub(crate) fn own_forces(
     forces: &OwnForces,
 ) {
     let solution = &forces.stored.solution;
-    let how = match forces.origin {
+    let how = match &forces.origin {
         Origin::Cache => "from the cache".to_owned(),
-        Origin::Computed(time) => format!(
+        Origin::Computed(effort) => format!(
             "computed in {:.1} s ({} unknowns, matrix of {})",
-            time.as_secs_f64(),
+            effort.total().as_secs_f64(),
             solution.sizes.unknowns,
             bytes_in_words(8 * (solution.sizes.unknowns as u64).pow(2))
         ),
@@ -37,8 +37,24 @@ pub(crate) fn own_forces(
         aircraft.asked,
         forces.key.to_hex()
     ));
+    if let Origin::Computed(effort) = &forces.origin {
+        console.say(format!("  {}", in_words(effort)));
+    }
     console.notes(&solution.notes);
     steady_loads(console, file, aircraft, &solution.steady);
+}
+
+/// Time of every stage, and the most memory.
+fn in_words(effort: &Effort) -> String {
+    let mut parts: Vec<String> = effort
+        .stages
+        .iter()
+        .map(|(stage, time)| format!("{stage} {:.1} s", time.as_secs_f64()))
+        .collect();
+    if let Some(bytes) = effort.peak_bytes {
+        parts.push(format!("at most {} of memory", bytes_in_words(bytes)));
+    }
+    parts.join(", ")
 }
 
 fn steady_loads(console: &Console, file: &CaseFile, aircraft: &Aircraft, steady: &SteadyState) {

@@ -7,5 +7,5 @@ mod table;
 
 pub(crate) use console::{Console, warn};
 pub(crate) use interrupt::watch as watch_for_interrupts;
-pub(crate) use progress::Bar;
+pub(crate) use progress::{Bar, Effort};
 pub(crate) use table::{Align, Table};

@@ -1,4 +1,4 @@
-//! How much memory a computation may take.
+//! How much memory a computation may take, and what this one takes.
 
 /// Share of the free memory that a computation may take: the rest is for the
 /// system and for what the estimate leaves out.
@@ -14,6 +14,17 @@ pub(crate) fn usable_bytes() -> Option<u64> {
         (free, left) => free.or(left),
     };
     smaller.map(|bytes| (USABLE * bytes as f64) as u64)
+}
+
+/// Bytes that the process holds now, and the most it has held, where the system tells.
+pub(crate) fn held_bytes() -> Option<(u64, u64)> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let bytes = |name: &str| -> Option<u64> {
+        let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+        let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+        Some(kibibytes * 1024)
+    };
+    Some((bytes("VmRSS:")?, bytes("VmHWM:")?))
 }
 
 fn free_memory() -> Option<u64> {
