@@ -225,14 +225,13 @@ pub fn build(
         skin: &skin,
         settings,
     };
-    let plan = if splines == 0 {
-        let faces = skin.faces.iter().flat_map(|face| &face.nodes);
-        size_ratio(faces, &positions, mesh)?;
-        planner.plan()
-    } else {
-        planner.plan()
+    // Under wrong axes few faces lie on the surface: all of them tell the size.
+    let by_faces = || {
+        let of_faces = skin.faces.iter().flat_map(|face| &face.nodes);
+        size_ratio(of_faces, &positions, mesh)
     };
-    let plan = match plan {
+    let of_faces = (splines == 0).then(by_faces).transpose()?;
+    let plan = match planner.plan() {
         Err(TransferError::NotOnSurface) => {
             return Err(TransferError::Apart {
                 overlap: 0.0,
@@ -242,7 +241,10 @@ pub fn build(
         other => other?,
     };
     let nodes = carrying_nodes(&plan, &skin);
-    let size_ratio = size_ratio(nodes.iter().flatten(), &positions, mesh)?;
+    let size_ratio = match of_faces {
+        Some(ratio) => ratio,
+        None => size_ratio(nodes.iter().flatten(), &positions, mesh)?,
+    };
     let carriers = Carriers::new(&plan, &skin, &positions, result)?;
     let carried = carriers.carry(&plan, &positions, mesh);
     let mut report = report(&plan, &skin, &carried, mesh);
