@@ -10,6 +10,7 @@
 
 use crate::blocked_lu::BlockedLu;
 use crate::error::BemError;
+use crate::hierarchical::HierarchicalOperator;
 use crate::progress::Progress;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
@@ -28,19 +29,34 @@ const SMALLEST_SINGLE_PIVOT: f64 = 1e-6;
 /// What the reduced model needs of the body operator A.
 pub(crate) trait BodyOperator: Sync {
     /// Overwrites B with A⁻¹ B.
-    fn solve(&self, b: &mut Mat<f64>, progress: &dyn Progress);
+    ///
+    /// # Errors
+    /// An iteration that does not converge or is interrupted.
+    fn solve(&self, b: &mut Mat<f64>, progress: &dyn Progress) -> Result<(), BemError>;
     /// Overwrites B with A⁻ᵀ B.
-    fn solve_transpose(&self, b: &mut Mat<f64>, progress: &dyn Progress);
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    fn solve_transpose(
+        &self,
+        b: &mut Mat<f64>,
+        progress: &dyn Progress,
+    ) -> Result<(), BemError>;
 }
 
-/// Numbers in which the factors are kept.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Factors {
-    /// Single precision, and two refinements with the matrix in double precision.
+/// How the equations of the body are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Solver {
+    /// Factors in single precision, and two refinements with the matrix in double precision.
     #[default]
     Refined,
-    /// Double precision.
+    /// Factors in double precision.
     Double,
+    /// A hierarchical matrix and an iteration; for more unknowns than a matrix can hold.
+    Hierarchical {
+        /// Relative error of its blocks and of the iteration.
+        tolerance: f64,
+    },
 }
 
 /// LU factors of Aᵀ.
@@ -59,32 +75,29 @@ impl DenseOperator {
     pub(crate) fn new(
         rows: Vec<f64>,
         size: usize,
-        factors: Factors,
+        is_double: bool,
         progress: &dyn Progress,
     ) -> Result<Self, BemError> {
         let stage = "factorising";
         progress.stage(stage, size as u64);
         let advance = |columns: usize| progress.advance(columns as u64);
-        let operator = match factors {
-            Factors::Double => {
-                let factors = BlockedLu::new(rows, size, &advance);
-                factors.check(SMALLEST_PIVOT, |x| x)?;
-                Self::Double(factors)
-            }
-            Factors::Refined => {
-                let mut single = vec![0.0; rows.len()];
-                single
-                    .par_chunks_mut(1 << 16)
-                    .zip(rows.par_chunks(1 << 16))
-                    .for_each(|(single, double)| {
-                        for (s, d) in single.iter_mut().zip(double) {
-                            *s = *d as f32;
-                        }
-                    });
-                let factors = BlockedLu::new(single, size, &advance);
-                factors.check(SMALLEST_SINGLE_PIVOT, f64::from)?;
-                Self::Refined { rows, factors }
-            }
+        let operator = if is_double {
+            let factors = BlockedLu::new(rows, size, &advance);
+            factors.check(SMALLEST_PIVOT, |x| x)?;
+            Self::Double(factors)
+        } else {
+            let mut single = vec![0.0; rows.len()];
+            single
+                .par_chunks_mut(1 << 16)
+                .zip(rows.par_chunks(1 << 16))
+                .for_each(|(single, double)| {
+                    for (s, d) in single.iter_mut().zip(double) {
+                        *s = *d as f32;
+                    }
+                });
+            let factors = BlockedLu::new(single, size, &advance);
+            factors.check(SMALLEST_SINGLE_PIVOT, f64::from)?;
+            Self::Refined { rows, factors }
         };
         if progress.cancelled() {
             return Err(BemError::Interrupted { stage });
@@ -166,13 +179,46 @@ fn subtract_product(a: MatRef<'_, f64>, x: MatRef<'_, f64>, r: MatMut<'_, f64>) 
         });
 }
 
-impl BodyOperator for DenseOperator {
-    fn solve(&self, b: &mut Mat<f64>, progress: &dyn Progress) {
-        self.solve_either(b, false, progress);
+/// The factorised or compressed body operator.
+#[derive(Debug)]
+pub(crate) enum Operator {
+    Dense(DenseOperator),
+    Hierarchical(HierarchicalOperator),
+}
+
+impl BodyOperator for Operator {
+    fn solve(&self, b: &mut Mat<f64>, progress: &dyn Progress) -> Result<(), BemError> {
+        match self {
+            Self::Dense(operator) => operator.solve(b, progress),
+            Self::Hierarchical(operator) => operator.solve(b, progress),
+        }
     }
 
-    fn solve_transpose(&self, b: &mut Mat<f64>, progress: &dyn Progress) {
+    fn solve_transpose(
+        &self,
+        b: &mut Mat<f64>,
+        progress: &dyn Progress,
+    ) -> Result<(), BemError> {
+        match self {
+            Self::Dense(operator) => operator.solve_transpose(b, progress),
+            Self::Hierarchical(operator) => operator.solve_transpose(b, progress),
+        }
+    }
+}
+
+impl BodyOperator for DenseOperator {
+    fn solve(&self, b: &mut Mat<f64>, progress: &dyn Progress) -> Result<(), BemError> {
+        self.solve_either(b, false, progress);
+        Ok(())
+    }
+
+    fn solve_transpose(
+        &self,
+        b: &mut Mat<f64>,
+        progress: &dyn Progress,
+    ) -> Result<(), BemError> {
         self.solve_either(b, true, progress);
+        Ok(())
     }
 }
 
@@ -195,18 +241,20 @@ mod tests {
             };
             let a = Mat::from_fn(n, n, entry);
             let rows: Vec<f64> = (0..n * n).map(|e| entry(e / n, e % n)).collect();
-            for factors in [Factors::Refined, Factors::Double] {
+            for is_double in [false, true] {
                 let operator =
-                    DenseOperator::new(rows.clone(), n, factors, &Silent).expect("regular");
+                    DenseOperator::new(rows.clone(), n, is_double, &Silent).expect("regular");
                 let x = Mat::from_fn(n, 80, |i, j| ((i + 3 * j) % 7) as f64);
                 for (mut b, transposed) in [(&a * &x, false), (a.transpose() * &x, true)] {
                     if transposed {
-                        operator.solve_transpose(&mut b, &Silent);
+                        operator.solve_transpose(&mut b, &Silent).expect("solved");
                     } else {
-                        operator.solve(&mut b, &Silent);
+                        operator.solve(&mut b, &Silent).expect("solved");
                     }
                     let error = (&b - &x).norm_max();
-                    println!("{n} unknowns, {factors:?}, transposed {transposed}: {error:.1e}");
+                    println!(
+                        "{n} unknowns, double {is_double}, transposed {transposed}: {error:.1e}"
+                    );
                     assert!(error < 1e-12);
                 }
             }
@@ -215,10 +263,10 @@ mod tests {
 
     #[test]
     fn a_singular_matrix_is_refused() {
-        for factors in [Factors::Refined, Factors::Double] {
+        for is_double in [false, true] {
             let rows = vec![1.0, 2.0, 2.0, 4.0];
             assert!(matches!(
-                DenseOperator::new(rows, 2, factors, &Silent),
+                DenseOperator::new(rows, 2, is_double, &Silent),
                 Err(BemError::Singular { .. })
             ));
         }

@@ -3,6 +3,7 @@
 
 use crate::Symmetry;
 use crate::boundary::{ModeFields, onset_sources};
+use crate::dense::Solver;
 use crate::galerkin::Galerkin;
 use crate::image::Image;
 use crate::near_field::POINTS;
@@ -424,6 +425,54 @@ fn a_panel_alone_gives_what_it_gives_in_the_set() {
                 assert!(
                     (one_d[c] - d[t][c]).abs() < 1e-14 && (one_s[c] - s[t][c]).abs() < 1e-14
                 );
+            }
+        }
+    }
+}
+
+/// Hierarchical against dense, whole and half: thin wing in incidence, steady flow too.
+#[test]
+fn the_hierarchical_solver_gives_the_forces_of_the_dense_one() {
+    let shape = NacaWing {
+        n_chord: 16,
+        n_half_span: 14,
+        sweep_deg: 20.0,
+        ..NacaWing::default()
+    };
+    let half_shape = NacaWing {
+        extent: Extent::Half,
+        ..shape.clone()
+    };
+    let flow = Flow {
+        alpha: 0.05,
+        beta: 0.0,
+    };
+    for (shape, symmetry) in [(shape, Symmetry::None), (half_shape, Symmetry::Symmetric)] {
+        let mesh = shape.structured().expect("wing");
+        let (edges, modes) = (edges(&mesh), modes(&mesh.vertices));
+        let dense = Problem {
+            symmetry,
+            ..problem_of(&mesh, &edges, &modes, flow)
+        };
+        let exact = solve(&dense, &Silent).expect("solved");
+        for tolerance in [1e-4, 1e-6] {
+            let solver = Solver::Hierarchical { tolerance };
+            let found = solve(&Problem { solver, ..dense }, &Silent).expect("solved");
+            for p in [c64::new(0.0, 0.0), c64::new(0.0, 0.4), c64::new(-0.1, 0.3)] {
+                let (a, b) = (
+                    exact.transfer.q(p).expect("in range"),
+                    found.transfer.q(p).expect("in range"),
+                );
+                let error = (&a - &b).norm_max() / a.norm_max();
+                let lift = found.steady.lift_by_pressure / exact.steady.lift_by_pressure - 1.0;
+                println!(
+                    "{} unknowns, {symmetry:?}, tolerance {tolerance:.0e}, p = {p}: Q off by \
+                     {error:.1e}, lift by {lift:.1e}",
+                    exact.sizes.unknowns
+                );
+                // Single precision of the blocks leaves some 1e-6 of it.
+                let limit = 10.0 * tolerance + 1e-5;
+                assert!(error < limit && lift.abs() < limit);
             }
         }
     }

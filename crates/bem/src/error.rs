@@ -22,6 +22,21 @@ pub enum BemError {
         /// Mesh vertex.
         vertex: usize,
     },
+    /// The iteration does not come to an end.
+    #[error(
+        "the iteration left {residual:.1e} of a right-hand side after {steps} steps: the surface is hardly closed or has parts thinner than its triangles; look at it with `fladder check`, or set gaf.solver = \"dense\""
+    )]
+    NotConverged {
+        /// Residual, of the right-hand side.
+        residual: f64,
+        /// Steps done.
+        steps: usize,
+    },
+    /// Exact change of shape with the hierarchical solver.
+    #[error(
+        "exact elastic columns assemble the equations of every deformed surface in full; set gaf.solver = \"dense\", or keep structure.shape_change = \"attached\""
+    )]
+    ShapeChangeHierarchical,
     /// Exact change of shape with antisymmetric motion of a half model.
     #[error(
         "exact elastic columns deform the surface, and an antisymmetrically deformed half is no half of a symmetric surface; mesh the whole aircraft or keep structure.shape_change = \"attached\""

@@ -144,6 +144,11 @@ impl Galerkin {
         self.triangles.len()
     }
 
+    /// Vertices whose potential is zero.
+    pub(crate) fn constrained(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.n_vertices).filter(|&v| self.constrained[v])
+    }
+
     /// Weight of test function `corner` of a triangle at test point `q`; zero where the
     /// potential is given.
     pub(crate) fn test_weight(&self, triangle: usize, q: usize, corner: usize) -> f64 {
@@ -206,6 +211,44 @@ impl Galerkin {
             right_hand_sides,
             free_terms,
         })
+    }
+
+    /// Free terms of a closed surface without its matrix: ½ at points inside flat triangles,
+    /// and what dividing test triangles near panels changes of the row sums.
+    pub(crate) fn closed_free_terms(
+        &self,
+        progress: &dyn Progress,
+    ) -> Result<Vec<f64>, BemError> {
+        let stage = "free terms";
+        progress.stage(stage, self.clusters.len() as u64);
+        let parts: Vec<Vec<PointValues>> = self
+            .clusters
+            .par_iter()
+            .map_init(TileScratch::default, |scratch, cluster| {
+                let mut sums = vec![[[0.0; WIDTH]; 3]; cluster.groups.len()];
+                for (group, sums) in cluster.groups.iter().zip(&mut sums) {
+                    for block in &self.blocks {
+                        scratch.near_sums(self, group, block, sums);
+                    }
+                }
+                progress.advance(1);
+                sums
+            })
+            .collect();
+        if progress.cancelled() {
+            return Err(BemError::Interrupted { stage });
+        }
+        let mut free_terms = vec![0.5; 3 * self.n_triangles()];
+        for (cluster, sums) in self.clusters.iter().zip(&parts) {
+            for (group, sums) in cluster.groups.iter().zip(sums) {
+                for (lane, &t) in group.triangles.iter().enumerate() {
+                    for (q, values) in sums.iter().enumerate() {
+                        free_terms[3 * t as usize + q] += values[lane];
+                    }
+                }
+            }
+        }
+        Ok(free_terms)
     }
 
     /// Corner values with the triangles in the order of the blocks.

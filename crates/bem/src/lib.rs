@@ -20,6 +20,7 @@
 //! | `lanes`, `panel_block`, `ordering`, `tiles` | eight points at once, blocks of close panels, test triangles |
 //! | `galerkin`, `near_field` | the equations |
 //! | `dense`, `blocked_lu` | their factorisation |
+//! | `cluster_tree`, `aca`, `hierarchical`, `krylov` | the same for more unknowns than a matrix can hold |
 //! | `image` | half models |
 //! | `guards` | what the mesh resolves |
 //! | `onset`, `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
@@ -30,6 +31,7 @@
 //!
 //! Nothing here knows about files, clocks or terminals.
 
+mod aca;
 mod adjacency;
 mod blocked_lu;
 mod blocks;
@@ -38,6 +40,7 @@ mod body_path;
 mod body_trace;
 mod boundary;
 mod carry;
+mod cluster_tree;
 mod contour;
 mod cut;
 mod dense;
@@ -48,7 +51,9 @@ mod far_tiles;
 mod far_wake;
 mod galerkin;
 mod guards;
+mod hierarchical;
 mod image;
+mod krylov;
 mod lanes;
 mod near_field;
 mod onset;
@@ -77,7 +82,7 @@ mod wake_influence;
 mod wake_jumps;
 mod wake_sheet;
 
-pub use dense::Factors;
+pub use dense::Solver;
 pub use error::{BemError, LaplaceError};
 pub use fladder_mesh::Symmetry;
 pub use guards::guards;

@@ -2,9 +2,10 @@
 
 use crate::boundary::{ModeFields, onset_sources};
 use crate::cut::CutSurface;
-use crate::dense::{BodyOperator, DenseOperator, Factors};
+use crate::dense::{BodyOperator, DenseOperator, Operator, Solver};
 use crate::error::BemError;
 use crate::galerkin::Galerkin;
+use crate::hierarchical::{HierarchicalOperator, source_potentials};
 use crate::image::Image;
 use crate::onset::OnsetBasis;
 use crate::progress::Progress;
@@ -41,7 +42,7 @@ pub(crate) struct Body<O> {
     pub(crate) jump_adjoint: Mat<f64>,
 }
 
-impl Prepared<DenseOperator> {
+impl Prepared<Operator> {
     /// Lays out, factorises and solves the steady flow.
     pub(crate) fn new(
         problem: &Problem<'_>,
@@ -65,19 +66,34 @@ impl Prepared<DenseOperator> {
         let mut flow_wake = None;
         let (body, onsets) = if flow == motion {
             let all = concatenate(&[&sources, &onset_sources(&galerkin)]);
-            let body = Body::factorise(galerkin, &all, &selector, problem.factors, progress)?;
+            let body = Body::factorise(
+                &surface,
+                galerkin,
+                &all,
+                &selector,
+                problem.solver,
+                progress,
+            )?;
             let onsets = body.steady_onsets(&wake, &selector, sources.ncols(), progress)?;
             (body, onsets)
         } else {
             let even = Galerkin::new(&surface, flow);
             let onset = onset_sources(&even);
             let (_, even_wake) = lay_out(problem, flow)?;
-            let steady = Body::factorise(even, &onset, &selector, problem.factors, progress)?;
+            let steady =
+                Body::factorise(&surface, even, &onset, &selector, problem.solver, progress)?;
             let onsets = steady.steady_onsets(&even_wake, &selector, 0, progress)?;
             flow_wake = Some(even_wake);
             drop(steady);
             (
-                Body::factorise(galerkin, &sources, &selector, problem.factors, progress)?,
+                Body::factorise(
+                    &surface,
+                    galerkin,
+                    &sources,
+                    &selector,
+                    problem.solver,
+                    progress,
+                )?,
                 onsets,
             )
         };
@@ -137,25 +153,52 @@ impl<O> Body<O> {
     }
 }
 
-impl Body<DenseOperator> {
+impl Body<Operator> {
     fn factorise(
+        surface: &CutSurface,
         galerkin: Galerkin,
         sources: &Mat<f64>,
         selector: &Mat<f64>,
-        factors: Factors,
+        solver: Solver,
         progress: &dyn Progress,
     ) -> Result<Self, BemError> {
-        let assembly = galerkin.assemble(sources.as_ref(), progress)?;
-        let operator =
-            DenseOperator::new(assembly.rows, galerkin.n_vertices, factors, progress)?;
-        let mut potentials = assembly.right_hand_sides;
-        operator.solve(&mut potentials, progress);
+        let (operator, mut potentials, free_terms) = match solver {
+            Solver::Hierarchical { tolerance } => {
+                let free_terms = galerkin.closed_free_terms(progress)?;
+                let operator = HierarchicalOperator::new(
+                    &galerkin,
+                    surface,
+                    &free_terms,
+                    tolerance,
+                    progress,
+                )?;
+                let sources = source_potentials(
+                    &galerkin,
+                    surface,
+                    sources.as_ref(),
+                    tolerance,
+                    progress,
+                )?;
+                (Operator::Hierarchical(operator), sources, free_terms)
+            }
+            Solver::Refined | Solver::Double => {
+                let assembly = galerkin.assemble(sources.as_ref(), progress)?;
+                let (size, is_double) = (galerkin.n_vertices, solver == Solver::Double);
+                let operator = DenseOperator::new(assembly.rows, size, is_double, progress)?;
+                (
+                    Operator::Dense(operator),
+                    assembly.right_hand_sides,
+                    assembly.free_terms,
+                )
+            }
+        };
+        operator.solve(&mut potentials, progress)?;
         let mut jump_adjoint = selector.clone();
-        operator.solve_transpose(&mut jump_adjoint, progress);
+        operator.solve_transpose(&mut jump_adjoint, progress)?;
         Ok(Self {
             galerkin,
             operator,
-            free_terms: assembly.free_terms,
+            free_terms,
             potentials,
             jump_adjoint,
         })
@@ -193,7 +236,7 @@ impl Body<DenseOperator> {
             })?;
             jumps = Mat::from_fn(n, 3, |i, j| solved[(i, j)].re);
             let mut response = tested * &jumps;
-            self.operator.solve(&mut response, progress);
+            self.operator.solve(&mut response, progress)?;
             phi += response;
         }
         Ok(UnitOnsets::new(&self.galerkin, wake, phi, jumps))

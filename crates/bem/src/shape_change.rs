@@ -74,7 +74,7 @@ pub(crate) fn correct_potentials<O: BodyOperator>(
             let up = residual(problem, &steady, mode, amplitude)?;
             let down = residual(problem, &steady, mode, -amplitude)?;
             let mut change = (down - up) * faer::Scale(0.5 / amplitude);
-            prepared.body.operator.solve(&mut change, &Silent);
+            prepared.body.operator.solve(&mut change, &Silent)?;
             for a in 0..onsets {
                 let column = m + a * e + k;
                 prepared

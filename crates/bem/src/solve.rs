@@ -1,7 +1,7 @@
 //! From a surface and its modes to the transfer model.
 
 use crate::cut::CutSurface;
-use crate::dense::{BodyOperator, Factors};
+use crate::dense::{BodyOperator, Solver};
 use crate::error::BemError;
 use crate::galerkin::CLUSTERS_AT_ONCE;
 use crate::image::Image;
@@ -77,8 +77,8 @@ pub struct Problem<'a> {
     pub semichord: f64,
     /// Point about which steady moments are taken, m.
     pub moment_point: Vec3,
-    /// Precision of the factors; results are those of double precision in both.
-    pub factors: Factors,
+    /// How the equations are solved.
+    pub solver: Solver,
 }
 
 impl<'a> Problem<'a> {
@@ -102,7 +102,7 @@ impl<'a> Problem<'a> {
             body_lines: &[],
             semichord,
             moment_point: Vec3::zeros(),
-            factors: Factors::default(),
+            solver: Solver::default(),
         }
     }
 }
@@ -196,16 +196,17 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
     let solved = functionals + ((1 + onsets) * modes + 6) as f64;
     let factorisation = operators * 2.0 / 3.0 * n.powi(3);
     let substitution = 2.0 * n * n * solved;
-    let (matrices, algebra) = match problem.factors {
-        Factors::Refined => (
+    let (matrices, algebra) = match problem.solver {
+        Solver::Refined => (
             12.0 * n * n,
             (factorisation + 3.0 * substitution) / SINGLE_FLOPS_PER_SECOND
                 + 2.0 * substitution / DOUBLE_FLOPS_PER_SECOND,
         ),
-        Factors::Double => (
+        Solver::Double => (
             8.0 * n * n,
             (factorisation + substitution) / DOUBLE_FLOPS_PER_SECOND,
         ),
+        Solver::Hierarchical { .. } => (0.0, 0.0),
     };
     let batch = CLUSTERS_AT_ONCE as f64 * ROWS_OF_A_CLUSTER * n * 8.0;
     let sources = 6.0 * sizes.triangles as f64 * ((1 + onsets) * modes) as f64 * 8.0;
@@ -260,6 +261,10 @@ fn sizes(surface: &CutSurface, wake: &Wake) -> Sizes {
 }
 
 pub(crate) fn check(problem: &Problem<'_>) -> Result<(), BemError> {
+    let is_hierarchical = matches!(problem.solver, Solver::Hierarchical { .. });
+    if is_hierarchical && problem.shape_change == ShapeChange::Exact {
+        return Err(BemError::ShapeChangeHierarchical);
+    }
     if problem.symmetry != Symmetry::None && problem.flow.beta != 0.0 {
         return Err(BemError::SideslipOnHalf {
             beta_deg: problem.flow.beta.to_degrees(),
@@ -291,7 +296,7 @@ pub(crate) fn check(problem: &Problem<'_>) -> Result<(), BemError> {
 ///
 /// One real factorisation of the body operator (two for antisymmetric motion, whose steady
 /// flow is symmetric); cost O(n³) for n vertices, memory 12 n² bytes, or 8 n² with
-/// [`Factors::Double`]. Same bits at any number of threads.
+/// [`Solver::Double`]. Same bits at any number of threads.
 ///
 /// # Errors
 /// [`BemError`]: modes that do not fit the mesh, trailing edges that allow no wake, a
@@ -310,7 +315,7 @@ pub fn solve(problem: &Problem<'_>, progress: &dyn Progress) -> Result<Solution,
     prepared
         .body
         .operator
-        .solve_transpose(&mut adjoint, progress);
+        .solve_transpose(&mut adjoint, progress)?;
     let adjoint = concatenate(&[&prepared.body.jump_adjoint, &adjoint]);
     let prepared = prepared.without_operator();
     let blocks = prepared.influence().blocks(adjoint.as_ref(), progress)?;

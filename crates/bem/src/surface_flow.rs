@@ -8,7 +8,7 @@
 //!
 //! the pressure on the moving surface's material points per unit of the mode.
 
-use crate::dense::{BodyOperator, DenseOperator};
+use crate::dense::{BodyOperator, Operator};
 use crate::error::BemError;
 use crate::prepare::Prepared;
 use crate::progress::Progress;
@@ -72,7 +72,7 @@ pub fn surface_flow(
 }
 
 fn unsteady(
-    prepared: &Prepared<DenseOperator>,
+    prepared: &Prepared<Operator>,
     problem: &Problem<'_>,
     velocity: &[Vec3],
     p: c64,
@@ -118,7 +118,7 @@ fn unsteady(
 
 /// φ and κ of every mode.
 fn potentials(
-    prepared: &Prepared<DenseOperator>,
+    prepared: &Prepared<Operator>,
     problem: &Problem<'_>,
     s: c64,
     progress: &dyn Progress,
@@ -148,7 +148,7 @@ fn potentials(
         let value = tested[(i, j % n)];
         if j < n { value.re } else { value.im }
     });
-    body.operator.solve(&mut parts, progress);
+    body.operator.solve(&mut parts, progress)?;
     let response = Mat::from_fn(tested.nrows(), n, |i, j| {
         c64::new(parts[(i, j)], parts[(i, j + n)])
     });

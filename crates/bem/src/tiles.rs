@@ -140,6 +140,14 @@ impl SeenFrom {
     }
 }
 
+impl SeenFrom {
+    /// Whether some triangle may be near some panel.
+    fn is_near(&self, block: &PanelBlock) -> bool {
+        let reach = NEAR * (block.largest + self.largest) + block.radius + self.radius;
+        (block.centre - self.centre).norm() <= reach
+    }
+}
+
 /// Tested influences of one block on one cluster, by rows: rows × places of doublets,
 /// rows × corners of sources.
 #[derive(Clone, Debug, Default)]
@@ -214,6 +222,32 @@ impl TileScratch {
         }
     }
 
+    /// Adds what the divided test triangles change of Σ D over the block, without the
+    /// image's sign, to `sums` of a group.
+    pub(crate) fn near_sums(
+        &self,
+        galerkin: &Galerkin,
+        group: &TestGroup,
+        block: &PanelBlock,
+        sums: &mut PointValues,
+    ) {
+        for (image, seen) in group.seen.iter().enumerate() {
+            if !seen.is_near(block) {
+                continue;
+            }
+            let tests = [&galerkin.tests, &galerkin.image_tests][image];
+            for (lane, &t) in group.triangles.iter().enumerate() {
+                let test = &tests[t as usize];
+                for panel in test.near(&block.spheres) {
+                    let change = test.change(&block.near(self.arch, panel, &test.near_points));
+                    for (sum, corners) in sums.iter_mut().zip(&change.doublets) {
+                        sum[lane] += corners.iter().sum::<f64>();
+                    }
+                }
+            }
+        }
+    }
+
     /// D and S of a block at the points of a group and at their images.
     fn at_points(
         &mut self,
@@ -246,8 +280,7 @@ impl TileScratch {
                     &mut sources[q],
                 );
             }
-            let reach = NEAR * (block.largest + seen.largest) + block.radius + seen.radius;
-            if (block.centre - seen.centre).norm() > reach {
+            if !seen.is_near(block) {
                 continue;
             }
             for (lane, &t) in group.triangles.iter().enumerate() {

@@ -236,6 +236,29 @@ pub struct Gaf {
     /// Factorise in double precision, instead of single precision refined twice.
     #[serde(default)]
     pub exact: bool,
+    /// How the equations are solved.
+    #[serde(default)]
+    pub solver: SolverChoice,
+    /// Relative error of a hierarchical matrix and of its iteration.
+    #[serde(default = "hierarchical_tolerance")]
+    pub tolerance: f64,
+}
+
+/// How the aerodynamic equations are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SolverChoice {
+    /// Dense up to 20 000 vertices, hierarchical beyond.
+    #[default]
+    Auto,
+    /// Factors of the full matrix.
+    Dense,
+    /// A hierarchical matrix and an iteration.
+    Hierarchical,
+}
+
+fn hierarchical_tolerance() -> f64 {
+    1e-6
 }
 
 fn only_zero() -> Vec<f64> {

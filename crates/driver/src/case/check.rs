@@ -3,7 +3,7 @@
 
 use super::aerodynamics::{AnalyticMode, Gaf, Mesh};
 use super::check_structure::structure;
-use super::{Case, CaseFile, Places, Range, Speeds, Stability, Structure, Trim};
+use super::{Case, CaseFile, Places, Range, SolverChoice, Speeds, Stability, Structure, Trim};
 use crate::atmosphere;
 use crate::failure::Failure;
 
@@ -202,6 +202,22 @@ fn source_of_forces(case: &Case, at: &At<'_>) -> Checked {
 }
 
 fn grid(case: &Case, gaf: &Gaf, at: &At<'_>) -> Checked {
+    if !(1e-7..=1e-2).contains(&gaf.tolerance) {
+        return Err(at.refuse(
+            "gaf.tolerance",
+            format!("`gaf.tolerance` is {}, outside 1e-7 to 1e-2", gaf.tolerance),
+            "blocks are kept in single precision, and beyond a hundredth forces mean nothing",
+            "leave the key out: 1e-6 keeps Q to some 1e-5 of its largest entry",
+        ));
+    }
+    if gaf.exact && gaf.solver == SolverChoice::Hierarchical {
+        return Err(at.refuse(
+            "gaf.exact",
+            "`gaf.exact` asks for factors in double precision, `gaf.solver` for an iteration",
+            "a hierarchical matrix has no factors",
+            "leave out one of the two",
+        ));
+    }
     at.all_finite("gaf.k", &gaf.k)?;
     at.all_finite("gaf.g", &gaf.g)?;
     let Some(first) = gaf.k.first() else {

@@ -92,6 +92,8 @@ pub(crate) const KEYS: &[&str] = &[
     "gaf.g",
     "gaf.file",
     "gaf.exact",
+    "gaf.solver",
+    "gaf.tolerance",
     "stability.speed.from",
     "stability.speed.to",
     "stability.speed.count",

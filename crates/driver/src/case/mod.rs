@@ -12,8 +12,8 @@ mod structure_edits;
 mod suggest;
 
 pub use aerodynamics::{
-    AnalyticMode, Axis, ControlMode, Flow, Gaf, Mesh, Modes, Reference, Rotation, Term,
-    TrailingEdges, Wake, WakeDirection, WakeMode,
+    AnalyticMode, Axis, ControlMode, Flow, Gaf, Mesh, Modes, Reference, Rotation, SolverChoice,
+    Term, TrailingEdges, Wake, WakeDirection, WakeMode,
 };
 pub use flight::{Flight, Range, Refine, Speeds, Stability, Thrust, Trim};
 pub use one_or_many::OneOrMany;

@@ -5,13 +5,13 @@
 
 use super::aircraft::Aircraft;
 use crate::cache::{Cache, Key, KeyBuilder, Stored};
-use crate::case::{self, CaseFile, WakeDirection};
+use crate::case::{self, CaseFile, SolverChoice, WakeDirection};
 use crate::failure::Failure;
 use crate::gaf_json::{self, Document, Frame, Sample};
 use crate::memory::{bytes_in_words, usable_bytes};
 use crate::terminal::{Bar, Console, Effort, warn};
 use faer::c64;
-use fladder_bem::{BemError, Flow, LaplaceError, Plan, Problem, Solution};
+use fladder_bem::{BemError, Flow, LaplaceError, Plan, Problem, Solution, Solver};
 use fladder_mesh::Vec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -79,17 +79,33 @@ pub(crate) fn problem<'a>(file: &CaseFile, aircraft: &'a Aircraft) -> Problem<'a
         body_lines: &aircraft.surface.body_lines,
         moment_point: Vec3::from(case.reference.moment_point),
         symmetry: aircraft.surface.symmetry,
-        factors: if case.gaf.exact {
-            fladder_bem::Factors::Double
-        } else {
-            fladder_bem::Factors::Refined
-        },
+        solver: solver(&case.gaf, aircraft.surface.mesh.vertices.len()),
         ..Problem::new(
             &aircraft.surface.mesh,
             &aircraft.surface.trailing_edges,
             &aircraft.modes,
             case.reference.semichord,
         )
+    }
+}
+
+/// Vertices beyond which a matrix is not kept in full.
+const LARGEST_DENSE: usize = 20_000;
+
+fn solver(gaf: &case::Gaf, vertices: usize) -> Solver {
+    let is_hierarchical = match gaf.solver {
+        SolverChoice::Auto => vertices > LARGEST_DENSE && !gaf.exact,
+        SolverChoice::Dense => false,
+        SolverChoice::Hierarchical => true,
+    };
+    if is_hierarchical {
+        Solver::Hierarchical {
+            tolerance: gaf.tolerance,
+        }
+    } else if gaf.exact {
+        Solver::Double
+    } else {
+        Solver::Refined
     }
 }
 
@@ -127,8 +143,12 @@ pub(crate) fn key(file: &CaseFile, problem: &Problem<'_>) -> Key {
     if problem.symmetry.is_half() {
         builder = builder.field("symmetry", problem.symmetry.word().as_bytes());
     }
-    if problem.factors == fladder_bem::Factors::Double {
-        builder = builder.field("factors", b"double");
+    match problem.solver {
+        Solver::Refined => {}
+        Solver::Double => builder = builder.field("factors", b"double"),
+        Solver::Hierarchical { tolerance } => {
+            builder = builder.numbers("hierarchical", [tolerance].into_iter());
+        }
     }
     if problem.shape_change == fladder_bem::ShapeChange::Exact {
         builder = builder.field("shape change", b"exact");
@@ -256,7 +276,7 @@ fn refuse_too_large(file: &CaseFile, plan: &Plan) -> Result<(), Failure> {
                 plan.sizes.triangles
             ),
             "the system would kill the program half-way",
-            "take a coarser mesh, or a machine with more memory",
+            "set gaf.solver = \"hierarchical\", take a coarser mesh, or a machine with more memory",
         )),
         _ => Ok(()),
     }
