@@ -1,7 +1,9 @@
-//! Chores: `cargo xtask mesh wing --chord 0.25 --span 2 wing.msh`, `cargo xtask validate`.
+//! Chores: `cargo xtask mesh wing --chord 0.25 --span 2 wing.msh`, `cargo xtask validate`,
+//! `cargo xtask samples FOLDER`.
 
 mod bench;
 mod mesh;
+mod samples;
 mod validate;
 
 use std::process::ExitCode;
@@ -24,6 +26,8 @@ enum Chore {
     Bench(bench::Bench),
     /// Measure the accuracy of the aerodynamics on fine meshes and write docs/validation.md
     Validate(validate::Validate),
+    /// Compare genuine result files below a folder with independent readers, node by node
+    Samples(samples::Samples),
 }
 
 fn main() -> ExitCode {
@@ -43,6 +47,14 @@ fn main() -> ExitCode {
             Ok(true) => ExitCode::SUCCESS,
             Ok(false) => {
                 eprintln!("not all goals are met");
+                ExitCode::FAILURE
+            }
+            Err(error) => refused(&error),
+        },
+        Chore::Samples(samples) => match samples.run() {
+            Ok(true) => ExitCode::SUCCESS,
+            Ok(false) => {
+                eprintln!("not all files are read alike");
                 ExitCode::FAILURE
             }
             Err(error) => refused(&error),

@@ -95,9 +95,10 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         vtu: Option<PathBuf>,
     },
-    /// Show what a finite-element result file holds
+    /// Show what a finite-element result file holds, or what a case makes of it: masses,
+    /// modes, and their errors on the surface
     Modes {
-        /// Result file
+        /// Result file; or TOML file, or folder with case.toml
         file: PathBuf,
         /// File with nodes, elements and sets that the result lacks
         #[arg(long, value_name = "FILE")]
@@ -105,6 +106,10 @@ enum Command {
         /// Write the findings to this file
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
+        /// Write the modes on the structure, and of a case those on the surface, for
+        /// ParaView and as pictures into this folder
+        #[arg(long, value_name = "DIR")]
+        vtu: Option<PathBuf>,
     },
     /// Look after the cache of aerodynamic forces
     Cache {
@@ -243,8 +248,14 @@ fn run(cli: Cli) -> Result<(), Failure> {
             file,
             geometry,
             json,
+            vtu,
         } => {
-            commands::modes(&session, &file, geometry.as_deref(), json.as_deref())?;
+            let wanted = commands::WantedModes {
+                geometry: geometry.as_deref(),
+                json: json.as_deref(),
+                vtu: vtu.as_deref(),
+            };
+            commands::modes(&session, &file, &wanted)?;
         }
         Command::Cache { action } => commands::cache(&session, &action)?,
     }

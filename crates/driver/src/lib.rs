@@ -6,7 +6,7 @@
 //! | [`case`] | the case file, its overrides and its checks |
 //! | [`cache`] | content-addressed store, hashed before it is decoded |
 //! | [`gaf_json`], [`json`] | exchange files |
-//! | [`plot`] | root locus and V-g-f diagram as SVG |
+//! | [`plot`] | root locus, V-g-f diagram and mode shapes as SVG |
 //! | [`failure`] | what every message says: what, where, why, what to do |
 //! | [`cli`] | commands and exit codes |
 

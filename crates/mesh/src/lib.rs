@@ -1,5 +1,6 @@
 //! Triangle meshes of wetted surfaces: read, judge, and find the edges a wake leaves from.
 
+pub mod bulk;
 pub mod judge;
 pub mod read;
 pub mod shapes;

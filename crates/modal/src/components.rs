@@ -13,8 +13,10 @@
 use crate::closest::FaceSearch;
 use crate::error::TransferError;
 use crate::face::Face;
-use crate::result::ModalResult;
+use crate::result::{ModalResult, NamedSet};
 use crate::skin::Skin;
+use crate::spline::Kernel;
+use crate::transfer_settings::{Method, TransferSettings};
 use fladder_mesh::{TriMesh, Vec3};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -33,6 +35,8 @@ pub enum Mapping {
     EqualName,
     /// Connected pieces of skin nearest to it.
     Connectivity,
+    /// All nodes of the structure, by a spline.
+    AllNodes,
 }
 
 impl Mapping {
@@ -42,6 +46,7 @@ impl Mapping {
             Self::Given => "as given",
             Self::EqualName => "by equal names",
             Self::Connectivity => "by connectivity",
+            Self::AllNodes => "by all nodes",
         }
     }
 }
@@ -56,13 +61,38 @@ pub(crate) struct Component {
     pub(crate) area: f64,
 }
 
+/// Structure that carries parts of the surface.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// Faces, as indices into the skin's faces.
+    Faces(Vec<u32>),
+    /// Nodes under a spline.
+    Nodes(Vec<u32>, Kernel),
+}
+
+impl Target {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Faces(list) | Self::Nodes(list, _) => list.len(),
+        }
+    }
+
+    /// Its faces; none under a spline.
+    pub(crate) fn faces(&self) -> &[u32] {
+        match self {
+            Self::Faces(faces) => faces,
+            Self::Nodes(..) => &[],
+        }
+    }
+}
+
 /// The whole assignment.
 pub(crate) struct Plan {
     pub(crate) components: Vec<Component>,
     /// Component of each vertex; `None` for vertices of no triangle.
     pub(crate) of_vertex: Vec<Option<u32>>,
-    /// Faces that carry the components, as indices into the skin's faces.
-    pub(crate) targets: Vec<Vec<u32>>,
+    /// What carries the components.
+    pub(crate) targets: Vec<Target>,
     pub(crate) notes: Vec<String>,
 }
 
@@ -72,7 +102,7 @@ pub(crate) struct Planner<'a> {
     pub(crate) positions: &'a [Vec3],
     pub(crate) mesh: &'a TriMesh,
     pub(crate) skin: &'a Skin,
-    pub(crate) given: &'a BTreeMap<String, Vec<String>>,
+    pub(crate) settings: &'a TransferSettings,
 }
 
 /// Triangles of a group that no smaller group holds.
@@ -88,17 +118,30 @@ impl Planner<'_> {
         let all: Vec<u32> = (0..self.skin.faces.len() as u32)
             .filter(|f| self.skin.outer[*f as usize])
             .collect();
-        let nearest_piece = self.nearest_pieces(&all)?;
+        let nearest_piece = if self.needs_faces() {
+            self.nearest_pieces(&all)?
+        } else {
+            vec![0; self.mesh.triangles.len()]
+        };
         let mut components = Vec::new();
-        let mut targets: Vec<Vec<u32>> = Vec::new();
+        let mut targets: Vec<Target> = Vec::new();
         let mut of_triangle = vec![0; self.mesh.triangles.len()];
         for part in self.parts(&nearest_piece, &mut notes) {
-            let (mapping, faces) = self.carriers(&part, &nearest_piece, &mut notes)?;
+            let (mapping, carriers) = match self.settings.method(&part.name) {
+                Method::Faces => {
+                    let (mapping, faces) = self.carriers(&part, &nearest_piece, &mut notes)?;
+                    (mapping, Target::Faces(faces))
+                }
+                Method::Spline(kernel) => {
+                    let (mapping, nodes) = self.nodes(&part);
+                    (mapping, Target::Nodes(nodes, kernel))
+                }
+            };
             let target = targets
                 .iter()
-                .position(|known| *known == faces)
+                .position(|known| *known == carriers)
                 .unwrap_or_else(|| {
-                    targets.push(faces);
+                    targets.push(carriers);
                     targets.len() - 1
                 });
             for triangle in &part.triangles {
@@ -125,14 +168,31 @@ impl Planner<'_> {
         self.mesh.area_vector(triangle as usize).norm()
     }
 
+    /// Whether a part of the mesh may be carried by faces.
+    fn needs_faces(&self) -> bool {
+        let groups = &self.mesh.surfaces;
+        let grouped: usize = groups.iter().map(|group| group.triangles.len()).sum();
+        let by_faces = |name: &str| self.settings.method(name) == Method::Faces;
+        (grouped < self.mesh.triangles.len() && self.settings.default_method == Method::Faces)
+            || groups.iter().any(|group| by_faces(&group.name))
+    }
+
     fn check_names(&self) -> Result<(), TransferError> {
-        for (group, sets) in self.given {
-            let groups = || {
-                self.mesh
-                    .surfaces
-                    .iter()
-                    .map(|surface| surface.name.clone())
-            };
+        let groups = || {
+            let surfaces = self.mesh.surfaces.iter();
+            surfaces.map(|surface| surface.name.clone())
+        };
+        let methods = self.settings.methods.keys();
+        if let Some(name) = methods
+            .clone()
+            .find(|name| groups().all(|known| known != **name))
+        {
+            return Err(TransferError::NoSuchGroup {
+                name: name.clone(),
+                known: groups().collect(),
+            });
+        }
+        for (group, sets) in &self.settings.components {
             if !groups().any(|name| name == *group) {
                 return Err(TransferError::NoGroup {
                     name: group.clone(),
@@ -140,13 +200,11 @@ impl Planner<'_> {
                 });
             }
             for set in sets {
-                if self.set(set).is_none() {
-                    let known = self
-                        .result
-                        .element_sets
-                        .iter()
-                        .map(|set| set.name.clone())
-                        .collect();
+                let splined = self.settings.method(group) != Method::Faces;
+                if self.set(set).is_none() && !(splined && self.node_set(set).is_some()) {
+                    let of_nodes = self.result.node_sets.iter().filter(|_| splined);
+                    let sets = self.result.element_sets.iter().chain(of_nodes);
+                    let known = sets.map(|set| set.name.clone()).collect();
                     let group = group.clone();
                     return Err(TransferError::NoSet {
                         name: set.clone(),
@@ -160,11 +218,36 @@ impl Planner<'_> {
     }
 
     fn set(&self, name: &str) -> Option<&[u32]> {
-        let sets = &self.result.element_sets;
-        let exact = sets.iter().find(|set| set.name == name);
-        let found =
-            exact.or_else(|| sets.iter().find(|set| set.name.eq_ignore_ascii_case(name)));
-        found.map(|set| set.members.as_slice())
+        named(&self.result.element_sets, name)
+    }
+
+    fn node_set(&self, name: &str) -> Option<&[u32]> {
+        named(&self.result.node_sets, name)
+    }
+
+    /// The nodes that carry a part by a spline, and how they were found: those of
+    /// the sets given, of a set of its name, or all.
+    fn nodes(&self, part: &Part) -> (Mapping, Vec<u32>) {
+        if let Some(sets) = self.settings.components.get(&part.name) {
+            return (Mapping::Given, self.nodes_of(sets));
+        }
+        let own = self.nodes_of(std::slice::from_ref(&part.name));
+        if own.is_empty() {
+            let all = (0..self.positions.len() as u32).collect();
+            return (Mapping::AllNodes, all);
+        }
+        (Mapping::EqualName, own)
+    }
+
+    fn nodes_of(&self, sets: &[String]) -> Vec<u32> {
+        let mut nodes = BTreeSet::new();
+        for set in sets {
+            for element in self.set(set).unwrap_or_default() {
+                nodes.extend(&self.result.elements[*element as usize].nodes);
+            }
+            nodes.extend(self.node_set(set).unwrap_or_default());
+        }
+        nodes.into_iter().collect()
     }
 
     /// Piece of the skin nearest to the middle of each triangle.
@@ -195,7 +278,7 @@ impl Planner<'_> {
         let mut order: Vec<usize> = (0..groups.len()).collect();
         order.sort_by_key(|g| {
             (
-                !self.given.contains_key(&groups[*g].name),
+                !self.settings.components.contains_key(&groups[*g].name),
                 groups[*g].triangles.len(),
                 *g,
             )
@@ -247,7 +330,7 @@ impl Planner<'_> {
         nearest_piece: &[u32],
         notes: &mut Vec<String>,
     ) -> Result<(Mapping, Vec<u32>), TransferError> {
-        if let Some(sets) = self.given.get(&part.name) {
+        if let Some(sets) = self.settings.components.get(&part.name) {
             return Ok((Mapping::Given, self.faces_of(&part.name, sets, notes)?));
         }
         if self
@@ -317,12 +400,19 @@ impl Planner<'_> {
         Ok(skin)
     }
 
-    fn set_names(&self, part: &str, mapping: Mapping, faces: &[u32]) -> Vec<String> {
+    fn set_names(&self, part: &str, mapping: Mapping, target: &Target) -> Vec<String> {
         match mapping {
-            Mapping::Given => self.given.get(part).cloned().unwrap_or_default(),
+            Mapping::Given => self
+                .settings
+                .components
+                .get(part)
+                .cloned()
+                .unwrap_or_default(),
             Mapping::EqualName => vec![part.to_owned()],
+            Mapping::AllNodes => Vec::new(),
             Mapping::Connectivity => {
-                let elements: BTreeSet<u32> = faces
+                let elements: BTreeSet<u32> = target
+                    .faces()
                     .iter()
                     .map(|f| self.skin.faces[*f as usize].element)
                     .collect();
@@ -356,6 +446,12 @@ impl Planner<'_> {
         }
         of_vertex
     }
+}
+
+fn named<'a>(sets: &'a [NamedSet], name: &str) -> Option<&'a [u32]> {
+    let exact = sets.iter().find(|set| set.name == name);
+    let found = exact.or_else(|| sets.iter().find(|set| set.name.eq_ignore_ascii_case(name)));
+    found.map(|set| set.members.as_slice())
 }
 
 /// The faces of one target.

@@ -17,7 +17,8 @@ pub enum ReadError {
     /// The first line belongs to no format known here.
     #[error(
         "{file} begins with {start:?}, which is no modal result known here \
-         (calculix-frd, fladder-json)"
+         (calculix-frd, fladder-json, gmsh-msh, nastran-f06, nastran-op2, nastran-op4, \
+         nastran-punch, unv)"
     )]
     UnknownFormat {
         /// File as given.
@@ -26,7 +27,10 @@ pub enum ReadError {
         start: String,
     },
     /// A geometry file of no format known here.
-    #[error("{file} begins with {start:?}, which is no geometry known here (CalculiX .inp)")]
+    #[error(
+        "{file} begins with {start:?}, which is no geometry known here (Nastran bulk data, \
+         CalculiX .inp, or a result file with nodes)"
+    )]
     UnknownGeometry {
         /// File as given.
         file: String,
@@ -51,6 +55,16 @@ pub enum ReadError {
         /// Line, counted from 1.
         line: usize,
         /// What is wrong with it.
+        message: String,
+    },
+    /// A binary file whose records do not fit together.
+    #[error("{file}, near byte {byte}: {message}; copy the file again, whole and as binary")]
+    Damaged {
+        /// File as given.
+        file: String,
+        /// Bytes read so far, of the unpacked file.
+        byte: u64,
+        /// What is wrong there.
         message: String,
     },
     /// A header announces another number of records than follow.
@@ -95,7 +109,8 @@ pub enum TransferError {
     /// Nothing that has faces.
     #[error(
         "the structure has no shells and no solids among its {elements} elements: nothing there \
-         can carry a surface; name a geometry file if the result holds nodes alone"
+         can carry a surface; name a geometry file if the result holds nodes alone, or choose a \
+         spline through the nodes with structure.transfer = \"polyharmonic\""
     )]
     NoSkin {
         /// Elements in the structure.
@@ -138,7 +153,7 @@ pub enum TransferError {
     },
     /// A set of `structure.components` that the structure lacks.
     #[error(
-        "structure.components.{group} names {name:?}, but the structure has the element sets \
+        "structure.components.{group} names {name:?}, but the structure has the sets \
          {known:?}"
     )]
     NoSet {
@@ -147,6 +162,26 @@ pub enum TransferError {
         /// Group it is given for.
         group: String,
         /// Element sets of the structure.
+        known: Vec<String>,
+    },
+    /// Points that leave a rotation open.
+    #[error(
+        "{group}: its {points} points of the structure lie on one line and have no rotations, so \
+         that nothing says how the surface turns about the line; name sets with points beside it, \
+         or write rotations with the modes"
+    )]
+    OnOneLine {
+        /// Group of the mesh.
+        group: String,
+        /// Points found for it.
+        points: usize,
+    },
+    /// A method for a group that the mesh lacks.
+    #[error("structure.transfer names {name:?}, but the mesh has the groups {known:?}")]
+    NoSuchGroup {
+        /// Name given.
+        name: String,
+        /// Groups of the mesh.
         known: Vec<String>,
     },
     /// Sets without shells or solids.

@@ -1,4 +1,4 @@
-//! CalculiX `.frd` results, ASCII.
+//! CalculiX `.frd` results, ASCII and binary.
 //!
 //! Fixed-width records: a node line is `-1`, its number in ten columns (five in
 //! the short form) and reals of twelve columns each, without separators. Blocks
@@ -10,6 +10,7 @@
 
 use crate::element;
 use crate::error::ReadError;
+use crate::frd_binary::{self, Precision};
 use crate::raw::{Geometry, ModeTable, RawElement, RawMode, ShapeBuilder};
 use crate::text::{Lines, field, real};
 use fladder_mesh::Vec3;
@@ -31,6 +32,19 @@ struct Parameters {
 enum Form {
     Short,
     Long,
+    Binary(Precision),
+}
+
+impl Form {
+    fn of(digit: &str) -> Option<Self> {
+        Some(match digit {
+            "0" => Self::Short,
+            "1" => Self::Long,
+            "2" => Self::Binary(Precision::Single),
+            "3" => Self::Binary(Precision::Double),
+            _ => return None,
+        })
+    }
 }
 
 struct Reader {
@@ -128,24 +142,18 @@ impl Reader {
         let count = field(&line, 24, 36)
             .parse()
             .map_err(|_| self.lines.syntax("the block header states no record count"))?;
-        let form = match field(&line, 73, 74) {
-            "0" => Form::Short,
-            "1" => Form::Long,
-            "2" | "3" => return Err(self.binary()),
-            _ => return Err(self.lines.syntax("the block header has no format digit")),
-        };
-        Ok((count, form))
+        Ok((count, self.form(field(&line, 73, 74))?))
     }
 
-    fn binary(&self) -> ReadError {
-        self.lines.unsupported(
-            "it is a binary .frd file; write ASCII results (*NODE FILE, not *NODE OUTPUT \
-             with binary)",
-        )
+    fn form(&self, digit: &str) -> Result<Form, ReadError> {
+        Form::of(digit).ok_or_else(|| self.lines.syntax("the block header has no format digit"))
     }
 
     fn node_block(&mut self) -> Result<(), ReadError> {
         let (stated, form) = self.block_header()?;
+        if let Form::Binary(precision) = form {
+            return frd_binary::nodes(&mut self.lines, stated, precision, &mut self.geometry);
+        }
         let mut found = 0;
         loop {
             let line = self.line("the end of the node block")?;
@@ -166,6 +174,9 @@ impl Reader {
 
     fn element_block(&mut self) -> Result<(), ReadError> {
         let (stated, form) = self.block_header()?;
+        if let Form::Binary(_) = form {
+            return frd_binary::elements(&mut self.lines, stated, &mut self.geometry);
+        }
         let mut found = 0;
         let mut current: Option<RawElement> = None;
         loop {
@@ -214,7 +225,7 @@ impl Reader {
     ) -> Result<(), ReadError> {
         let width = match form {
             Form::Short => 5,
-            Form::Long => 10,
+            Form::Long | Form::Binary(_) => 10,
         };
         let mut at = 3;
         while at < line.len() && !field(line, at, line.len()).is_empty() {
@@ -251,37 +262,50 @@ impl Reader {
         let name = field(&attribute, 5, 13).to_owned();
         let modal = parameters.mode.is_some() || field(&header, 56, 58) == MODAL;
         match name.as_str() {
-            "DISP" if modal => self.mode(&header, &parameters),
+            "DISP" if modal => self.mode([&header, &attribute], &parameters),
             "PDISP" | "DISPI" => Err(self.lines.unsupported(format!(
                 "the block {name} holds complex modes; real modes are needed"
             ))),
-            _ => self.skip(&name, modal),
+            _ => self.skip(&name, modal, [&header, &attribute]),
         }
     }
 
-    fn skip(&mut self, name: &str, modal: bool) -> Result<(), ReadError> {
+    fn skip(
+        &mut self,
+        name: &str,
+        modal: bool,
+        [header, attribute]: [&str; 2],
+    ) -> Result<(), ReadError> {
         let kind = if modal { "modal" } else { "static" };
         let note = format!("{kind} results {name} are not used");
         if !self.geometry.notes.contains(&note) {
             self.geometry.notes.push(note);
         }
+        let form = Form::of(field(header, 73, 75));
+        if let Some(form @ Form::Binary(precision)) = form {
+            let stated = self.stated(header)?;
+            let components = self.stored_components(attribute, form)?.len();
+            return frd_binary::skip(&mut self.lines, stated, components, precision);
+        }
         while field(&self.line("the end of a result block")?, 0, 3) != "-3" {}
         Ok(())
     }
 
-    fn mode(&mut self, header: &str, parameters: &Parameters) -> Result<(), ReadError> {
-        let stated = field(header, 24, 36).parse().map_err(|_| {
-            self.lines
-                .syntax("the result header states no record count")
-        })?;
-        let form = match field(header, 73, 75) {
-            "0" => Form::Short,
-            "1" => Form::Long,
-            _ => return Err(self.binary()),
-        };
+    fn mode(
+        &mut self,
+        [header, attribute]: [&str; 2],
+        parameters: &Parameters,
+    ) -> Result<(), ReadError> {
+        let stated = self.stated(header)?;
+        let form = self.form(field(header, 73, 75))?;
         let frequency_hz = self.parameter_value(field(header, 12, 24))?;
-        self.components()?;
-        let displacement = self.displacements(stated, form)?;
+        self.components(attribute, form)?;
+        let displacement = match form {
+            Form::Binary(precision) => {
+                frd_binary::displacements(&mut self.lines, stated, precision, &mut self.table)?
+            }
+            _ => self.displacements(stated, form)?,
+        };
         let next = u32::try_from(self.table.modes.len() + 1).unwrap_or(u32::MAX);
         let index = parameters.mode.unwrap_or(next);
         if self.table.modes.iter().any(|mode| mode.index == index) {
@@ -309,11 +333,30 @@ impl Reader {
         Ok(())
     }
 
-    /// Checks that the first three stored components are the displacements.
-    fn components(&mut self) -> Result<(), ReadError> {
+    fn stated(&self, header: &str) -> Result<usize, ReadError> {
+        field(header, 24, 36).parse().map_err(|_| {
+            self.lines
+                .syntax("the result header states no record count")
+        })
+    }
+
+    /// Names of the components that are stored, not to be computed.
+    ///
+    /// The attribute line counts them all; in binary files values begin right
+    /// behind the last, in text a line of another kind ends them.
+    fn stored_components(
+        &mut self,
+        attribute: &str,
+        form: Form,
+    ) -> Result<Vec<String>, ReadError> {
+        let count: Option<usize> = field(attribute, 13, 18).parse().ok();
+        let count = count.filter(|_| matches!(form, Form::Binary(_)));
         let mut stored = Vec::new();
-        loop {
-            let line = self.line("the components of a mode")?;
+        for k in 0.. {
+            if count.is_some_and(|count| k == count) {
+                break;
+            }
+            let line = self.line("the components of a result")?;
             if field(&line, 0, 3) != "-5" {
                 self.lines.step_back();
                 break;
@@ -322,6 +365,12 @@ impl Reader {
                 stored.push(field(&line, 5, 13).to_owned());
             }
         }
+        Ok(stored)
+    }
+
+    /// Checks that the stored components are the displacements.
+    fn components(&mut self, attribute: &str, form: Form) -> Result<(), ReadError> {
+        let stored = self.stored_components(attribute, form)?;
         if stored == ["D1", "D2", "D3"] {
             return Ok(());
         }
@@ -357,7 +406,7 @@ impl Reader {
     fn number(&self, line: &str, form: Form) -> Result<(u64, usize), ReadError> {
         let end = match form {
             Form::Short => 8,
-            Form::Long => 13,
+            Form::Long | Form::Binary(_) => 13,
         };
         let text = field(line, 3, end);
         match text.parse() {

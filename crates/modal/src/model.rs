@@ -1,9 +1,12 @@
 //! The structure as the eigenproblem needs it: rigid-body properties, and
 //! elastic modes of unit generalised mass in SI units and mesh axes.
 
+use crate::edit::{EditError, Edits};
+use crate::edit_setup;
 use crate::error::ReadError;
 use crate::format::Format;
 use crate::half::{HalfError, Probe};
+use crate::quality;
 use crate::read::read_structure;
 use crate::result::{ModalResult, Mode};
 use crate::rigid::{Inertia, RigidBody, RigidBodyError};
@@ -43,6 +46,8 @@ pub struct StructureSettings {
     pub modes: Option<[usize; 2]>,
     /// Mass properties that override those of the file.
     pub rigid_body: RigidBodySettings,
+    /// What is changed of it.
+    pub edits: Edits,
 }
 
 /// Mass properties of the whole aircraft as far as the case gives them.
@@ -70,8 +75,12 @@ pub struct ElasticMode {
     /// Generalised mass before normalisation, kg: that in the file, twice that
     /// of a half model.
     pub generalised_mass: f64,
+    /// Generalised stiffness before normalisation.
+    pub generalised_stiffness: f64,
     /// Displacement a node, m per √kg m.
     pub shape: Vec<Vec3>,
+    /// Rotation a node, rad per √kg m, where the file has them.
+    pub rotation: Option<Vec<Vec3>>,
     /// Largest participation of a rigid translation, relative to √mass; zero
     /// for a mode orthogonal to rigid motion. `None` where the file is silent.
     pub participation: Option<f64>,
@@ -111,6 +120,9 @@ pub enum StructureError {
     /// A half model that is none, or modes of the other kind.
     #[error(transparent)]
     Half(#[from] HalfError),
+    /// Changes that cannot be made.
+    #[error(transparent)]
+    Edit(#[from] EditError),
     /// A choice of modes the file does not hold.
     #[error(
         "structure.modes = [{first}, {last}] where the file holds the elastic modes 1 to {count}"
@@ -151,9 +163,19 @@ pub fn load(settings: &StructureSettings) -> Result<StructuralModel, StructureEr
     let mut notes = result.notes.clone();
     notes.extend(survey.notes.iter().cloned());
     notes.extend(survey.recovered.as_ref().and_then(asymmetry));
-    let rigid_body = rigid_body(&settings.rigid_body, &result, &survey, &mut notes)?;
+    notes.extend(quality::remarks(&result, &survey));
+    let mut rigid_body = rigid_body(&settings.rigid_body, &result, &survey, &mut notes)?;
     participations(&mut result, settings);
-    let elastic = elastic_modes(&result, &survey, rigid_body.as_ref());
+    let mut elastic = elastic_modes(&result, &survey, rigid_body.as_ref());
+    if !settings.edits.keeps_shapes() {
+        let structure = edit_setup::Structure {
+            result: &result,
+            survey: &survey,
+            settings,
+        };
+        (elastic, rigid_body) = structure.edited(&elastic, rigid_body, &mut notes)?;
+    }
+    edit_setup::override_frequencies(&mut elastic, &settings.edits.frequencies, &mut notes)?;
     let mut elastic = subset(elastic, settings.modes)?;
     if let Some(probe) = probe.filter(|_| settings.symmetry.is_half()) {
         let (wanted, leave_out) = (settings.symmetry, settings.leave_out_other);
@@ -278,13 +300,16 @@ fn elastic_modes(
 fn normalised(mode: &Mode, number: usize, mass: Option<f64>) -> ElasticMode {
     let scale = 1.0 / mode.generalised_mass.sqrt();
     let participation = mode.participation.zip(mass);
+    let scaled = |values: &[Vec3]| values.iter().map(|u| u * scale).collect();
     ElasticMode {
         name: format!("elastic:{number}"),
         index: mode.index,
         frequency_hz: mode.frequency_hz,
         omega: TAU * mode.frequency_hz,
         generalised_mass: mode.generalised_mass,
-        shape: mode.displacement.iter().map(|u| u * scale).collect(),
+        generalised_stiffness: mode.generalised_stiffness,
+        shape: scaled(&mode.displacement),
+        rotation: mode.rotation.as_deref().map(scaled),
         participation: participation
             .map(|(factors, mass)| factors.amax() * scale / mass.sqrt()),
     }

@@ -38,14 +38,18 @@ pub(crate) fn blocks(
         .enumerate()
         .map(|(k, node)| {
             let gradient = shape.by_r[k] * dual_r + shape.by_s[k] * dual_s;
-            let turned = normal.cross(&gradient);
-            let rotation = 0.5 * normal * turned.transpose() - turned * normal.transpose();
             (
                 *node,
-                Matrix3::identity() * shape.value[k] - offset * rotation,
+                Matrix3::identity() * shape.value[k] - offset * turning(&normal, &gradient),
             )
         })
         .collect()
+}
+
+/// The part of ω that the displacement of one node makes.
+pub(crate) fn turning(normal: &Vec3, gradient: &Vec3) -> Matrix3<f64> {
+    let turned = normal.cross(gradient);
+    0.5 * normal * turned.transpose() - turned * normal.transpose()
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 use crate::element::ElementKind;
 use crate::rigid::RigidBody;
 use fladder_mesh::Vec3;
+use nalgebra::Matrix3;
 use std::collections::{BTreeMap, HashMap};
 
 /// Nodes, elements and sets of one file.
@@ -17,6 +18,9 @@ pub(crate) struct Geometry {
     pub(crate) element_sets: BTreeMap<String, Vec<u64>>,
     /// Node numbers by set name.
     pub(crate) node_sets: BTreeMap<String, Vec<u64>>,
+    /// Directions of displacement components, as columns in the axes of the
+    /// positions, of nodes that have their own.
+    pub(crate) local_axes: BTreeMap<u64, Matrix3<f64>>,
     /// What was ignored or assumed.
     pub(crate) notes: Vec<String>,
 }
@@ -51,6 +55,92 @@ pub(crate) struct ModeTable {
     position: HashMap<u64, usize>,
     pub(crate) modes: Vec<RawMode>,
     pub(crate) stated_mass: Option<RigidBody>,
+    /// Vectors are in each node's own axes, [`Geometry::local_axes`].
+    pub(crate) in_local_axes: bool,
+}
+
+/// A mode with displacements and, where the file has them, rotations, while its
+/// block is read.
+#[derive(Debug)]
+pub(crate) struct ModeBuilder {
+    mode: RawMode,
+    displacement: ShapeBuilder,
+    rotation: ShapeBuilder,
+    has_rotations: bool,
+    /// Unknowns that belong to no place.
+    pub(crate) scalar_points: usize,
+}
+
+impl ModeBuilder {
+    pub(crate) fn new(index: u32, frequency_hz: f64, eigenvalue: Option<f64>) -> Self {
+        Self {
+            mode: RawMode {
+                index,
+                frequency_hz,
+                eigenvalue,
+                generalised_mass: None,
+                displacement: Vec::new(),
+                rotation: None,
+                participation: None,
+            },
+            displacement: ShapeBuilder::default(),
+            rotation: ShapeBuilder::default(),
+            has_rotations: false,
+            scalar_points: 0,
+        }
+    }
+
+    pub(crate) fn with_mass(mut self, mass: Option<f64>) -> Self {
+        self.mode.generalised_mass = mass;
+        self
+    }
+
+    pub(crate) fn index(&self) -> u32 {
+        self.mode.index
+    }
+
+    /// Adds a node; says what is wrong with it otherwise.
+    pub(crate) fn add(
+        &mut self,
+        table: &mut ModeTable,
+        node: u64,
+        displacement: Vec3,
+        rotation: Option<Vec3>,
+    ) -> Result<(), String> {
+        table.add(&mut self.displacement, node, displacement)?;
+        if let Some(rotation) = rotation {
+            self.has_rotations = true;
+            table.add(&mut self.rotation, node, rotation)?;
+        }
+        Ok(())
+    }
+
+    /// Puts the finished mode into the table.
+    pub(crate) fn finish(
+        self,
+        table: &mut ModeTable,
+        notes: &mut Vec<String>,
+    ) -> Result<(), String> {
+        let mut mode = self.mode;
+        if table.modes.iter().any(|other| other.index == mode.index) {
+            return Err(format!(
+                "mode {} comes twice, as after two subcases or steps; keep one",
+                mode.index
+            ));
+        }
+        mode.displacement = table.finish(self.displacement)?;
+        if self.has_rotations {
+            mode.rotation = Some(table.finish(self.rotation)?);
+        }
+        if self.scalar_points > 0 && table.modes.is_empty() {
+            notes.push(format!(
+                "{} scalar points have no place and are left out",
+                self.scalar_points
+            ));
+        }
+        table.modes.push(mode);
+        Ok(())
+    }
 }
 
 /// A mode's values while its block is read.
@@ -61,6 +151,14 @@ pub(crate) struct ShapeBuilder {
 }
 
 impl ModeTable {
+    /// An empty table of vectors in each node's own axes.
+    pub(crate) fn in_local_axes() -> Self {
+        Self {
+            in_local_axes: true,
+            ..Self::default()
+        }
+    }
+
     /// Adds the displacement of a node; says what is wrong with it otherwise.
     pub(crate) fn add(
         &mut self,

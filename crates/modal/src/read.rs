@@ -2,11 +2,13 @@
 //! eigenvalues, and puts them together.
 
 use crate::error::ReadError;
-use crate::format::{self, Format};
+use crate::format::{self, Content, Format};
+use crate::nastran::{bulk, f06, op2, op4_modes, pch};
 use crate::raw::{Geometry, ModeTable, RawElement, RawMode};
 use crate::result::{Element, ModalResult, Mode, NamedSet, Node};
-use crate::{dat, frd, inp, neutral, text};
+use crate::{dat, frd, inp, msh, neutral, unv};
 use fladder_mesh::Vec3;
+use nalgebra::Matrix3;
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -34,10 +36,7 @@ pub fn read_structure(
         Some(format) => format,
         None => format::detect(file)?,
     };
-    let (own, mut table) = match format {
-        Format::CalculixFrd => frd::read(file)?,
-        Format::Neutral => neutral::read(file)?,
-    };
+    let (own, mut table) = read_format(file, format)?;
     let mut notes = Vec::new();
     if format == Format::CalculixFrd {
         match eigenvalue_file(file) {
@@ -53,7 +52,20 @@ pub fn read_structure(
             ),
         }
     }
-    let given = geometry.map(read_geometry).transpose()?;
+    let beside = geometry
+        .is_none()
+        .then(|| input_file(file))
+        .flatten()
+        .filter(|_| own.nodes.is_empty());
+    if let Some(path) = &beside {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        notes.push(format!("nodes and elements are taken from {name}"));
+    }
+    let given = geometry.or(beside.as_deref());
+    let given = given.map(read_geometry).transpose()?;
+    if format == Format::NastranOp4 {
+        op4_modes::number(&mut table, given.as_ref(), file)?;
+    }
     Assembly {
         file: file.display().to_string(),
         format,
@@ -64,29 +76,69 @@ pub fn read_structure(
 
 /// Reads a file with nodes, elements and sets alone.
 fn read_geometry(path: &Path) -> Result<Geometry, ReadError> {
-    let line = text::first_line(path)?;
-    if line.starts_with('*') {
-        return inp::read(path);
+    match format::content(path) {
+        Ok(Content::Input) => inp::read(path),
+        Ok(Content::Bulk) => bulk::read(path),
+        Ok(Content::Result(format)) => {
+            let (geometry, _) = read_format(path, format)?;
+            if geometry.nodes.is_empty() {
+                return Err(ReadError::Unsupported {
+                    file: path.display().to_string(),
+                    what: format!("a {} file without nodes gives no geometry", format.name()),
+                });
+            }
+            Ok(geometry)
+        }
+        Err(ReadError::UnknownFormat { file, start }) => {
+            Err(ReadError::UnknownGeometry { file, start })
+        }
+        Err(error) => Err(error),
     }
-    let start = line.chars().take(40).collect();
-    Err(ReadError::UnknownGeometry {
-        file: path.display().to_string(),
-        start,
-    })
+}
+
+/// Geometry and modes as far as a file has them.
+pub(crate) fn read_format(
+    file: &Path,
+    format: Format,
+) -> Result<(Geometry, ModeTable), ReadError> {
+    match format {
+        Format::CalculixFrd => frd::read(file),
+        Format::Neutral => neutral::read(file),
+        Format::NastranPunch => pch::read(file),
+        Format::NastranF06 => f06::read(file),
+        Format::NastranOp2 => op2::read(file),
+        Format::NastranOp4 => op4_modes::read(file),
+        Format::Universal => unv::read(file),
+        Format::Gmsh => msh::read(file),
+    }
 }
 
 /// The `.dat` file beside a `.frd` file.
 fn eigenvalue_file(file: &Path) -> Option<PathBuf> {
+    beside(file, &["dat"]).next()
+}
+
+/// The input beside a result that has no nodes of its own.
+fn input_file(file: &Path) -> Option<PathBuf> {
+    beside(file, &["bdf", "nas", "dat", "inp"])
+        .find(|path| matches!(format::content(path), Ok(Content::Bulk | Content::Input)))
+}
+
+/// Files of the same stem, plain or gzipped.
+fn beside<'a>(file: &Path, endings: &'a [&'a str]) -> impl Iterator<Item = PathBuf> + 'a {
     let unzipped = match file.extension() {
         Some(extension) if extension.eq_ignore_ascii_case("gz") => file.with_extension(""),
         _ => file.to_owned(),
     };
-    [
-        unzipped.with_extension("dat"),
-        unzipped.with_extension("dat.gz"),
-    ]
-    .into_iter()
-    .find(|path| path.is_file())
+    endings
+        .iter()
+        .flat_map(move |ending| {
+            [
+                unzipped.with_extension(ending),
+                unzipped.with_extension(format!("{ending}.gz")),
+            ]
+        })
+        .filter(|path| path.is_file())
 }
 
 struct Assembly {
@@ -103,7 +155,16 @@ impl Assembly {
         table: ModeTable,
     ) -> Result<ModalResult, ReadError> {
         if table.modes.is_empty() {
-            return Err(self.mismatch("it holds no mode"));
+            return Err(self.mismatch(
+                "it holds no mode; write the shapes of a modal analysis into it, or give it as \
+                 structure.geometry (--geometry) beside the file that has them",
+            ));
+        }
+        if own.nodes.is_empty() && given.is_none() {
+            return Err(self.mismatch(
+                "it has modes but no nodes; name the file that has them as structure.geometry \
+                 (--geometry)",
+            ));
         }
         self.notes.extend(own.notes.iter().cloned());
         let geometry = match given {
@@ -128,7 +189,10 @@ impl Assembly {
             nodes.iter().map(|node| row[&node.id]).collect()
         };
         let stated_mass = table.stated_mass;
-        let modes = self.modes(table.modes, &reorder)?;
+        let mut modes = self.modes(table.modes, &reorder)?;
+        if table.in_local_axes {
+            self.turn_to_basic_axes(&mut modes, &nodes, &geometry.local_axes);
+        }
         let Self { format, notes, .. } = self;
         Ok(ModalResult {
             format,
@@ -153,8 +217,12 @@ impl Assembly {
         for id in used {
             let Some(position) = given.nodes.get(id) else {
                 return Err(self.mismatch(format!(
-                    "node {id} has displacements but is not in the geometry file; CalculiX \
-                     numbers nodes anew unless results are written with OUTPUT=2D"
+                    "node {id} has displacements but is not in the geometry file{}",
+                    if self.format == Format::CalculixFrd {
+                        "; CalculiX numbers nodes anew unless results are written with OUTPUT=2D"
+                    } else {
+                        ""
+                    }
                 )));
             };
             let Some(other) = own.nodes.get(id) else {
@@ -294,6 +362,35 @@ impl Assembly {
             ));
         }
         Ok(modes)
+    }
+
+    /// Turns displacements and rotations from the axes of their nodes.
+    fn turn_to_basic_axes(
+        &mut self,
+        modes: &mut [Mode],
+        nodes: &[Node],
+        local_axes: &BTreeMap<u64, Matrix3<f64>>,
+    ) {
+        let turned: Vec<(usize, &Matrix3<f64>)> = nodes
+            .iter()
+            .enumerate()
+            .filter_map(|(k, node)| Some((k, local_axes.get(&node.id)?)))
+            .collect();
+        if turned.is_empty() {
+            return;
+        }
+        self.notes.push(format!(
+            "displacements of {} nodes are turned from their own axes",
+            turned.len()
+        ));
+        for mode in modes {
+            for (k, axes) in &turned {
+                mode.displacement[*k] = *axes * mode.displacement[*k];
+                if let Some(rotation) = &mut mode.rotation {
+                    rotation[*k] = *axes * rotation[*k];
+                }
+            }
+        }
     }
 
     fn mismatch(&self, message: impl Into<String>) -> ReadError {

@@ -9,8 +9,9 @@ use std::path::Path;
 /// No format read here has longer lines; a longer one is a binary file.
 const LINE_LIMIT: u64 = 1 << 16;
 
-/// Bytes in which the first line is looked for.
-const START: u64 = 4096;
+/// Bytes by which a format is told: the printed file of Nastran begins with
+/// pages of licence.
+const START: u64 = 1 << 16;
 
 /// The decompressed content of a file.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn BufRead>, ReadError> {
@@ -33,27 +34,18 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn BufRead>, ReadError> {
     })
 }
 
-/// The first line that is not blank, as far as it lies within the first bytes;
-/// files of one long line are welcome here.
-pub(crate) fn first_line(path: &Path) -> Result<String, ReadError> {
+/// The first bytes of the decompressed content, enough to tell its format.
+pub(crate) fn start(path: &Path) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
     let read = open(path)?.take(START).read_to_end(&mut bytes);
-    let file = path.display().to_string();
     match read {
         Err(source) if bytes.is_empty() && source.kind() != io::ErrorKind::UnexpectedEof => {
-            return Err(ReadError::Io { file, source });
+            Err(ReadError::Io {
+                file: path.display().to_string(),
+                source,
+            })
         }
-        _ => {}
-    }
-    let text = String::from_utf8_lossy(&bytes);
-    let text = text.trim_start_matches('\u{feff}').trim_start();
-    match text.lines().next() {
-        Some(line) => Ok(line.trim_end().to_owned()),
-        None => Err(ReadError::Truncated {
-            file,
-            line: 0,
-            missing: "any content".to_owned(),
-        }),
+        _ => Ok(bytes),
     }
 }
 
@@ -120,6 +112,18 @@ impl Lines {
         self.text.clear();
         self.text.push_str(&String::from_utf8_lossy(line));
         Ok(Some(&self.text))
+    }
+
+    /// So many bytes behind the line read last, in a file that is text in parts.
+    pub(crate) fn bytes(&mut self, count: usize, missing: &str) -> Result<Vec<u8>, ReadError> {
+        let mut bytes = Vec::new();
+        let read = (&mut self.reader)
+            .take(count as u64)
+            .read_to_end(&mut bytes);
+        match read.map_err(|source| self.io_error(source))? {
+            read if read == count => Ok(bytes),
+            _ => Err(self.truncated(missing)),
+        }
     }
 
     pub(crate) fn at_end(&mut self) -> bool {

@@ -125,6 +125,46 @@ pub enum WakeDirection {
 pub struct Modes {
     /// In the order of their rows and columns.
     pub analytic: Vec<AnalyticMode>,
+    /// Control surfaces, behind them.
+    pub control: Vec<ControlMode>,
+}
+
+impl Modes {
+    /// The formulae of all, in order, with the keys they stand at.
+    pub fn formulae(&self) -> Vec<(String, AnalyticMode)> {
+        let analytic = self.analytic.iter().cloned().enumerate();
+        let control = self.control.iter().enumerate();
+        analytic
+            .map(|(number, mode)| (format!("modes.analytic.{number}"), mode))
+            .chain(control.map(|(n, mode)| (format!("modes.control.{n}"), mode.formula())))
+            .collect()
+    }
+}
+
+/// A control surface turned by one radian about its hinge.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ControlMode {
+    /// Name in tables and files; left out: `control:` and the first group.
+    pub name: Option<String>,
+    /// Surface groups of the mesh that turn.
+    pub group: OneOrMany<String>,
+    /// Hinge.
+    pub hinge: Rotation,
+}
+
+impl ControlMode {
+    fn formula(&self) -> AnalyticMode {
+        let named = self.group.as_slice().first();
+        let own = || format!("control:{}", named.map_or("", String::as_str));
+        AnalyticMode {
+            name: self.name.clone().unwrap_or_else(own),
+            translation: None,
+            rotation: Some(self.hinge.clone()),
+            polynomial: None,
+            group: Some(self.group.clone()),
+        }
+    }
 }
 
 /// One mode given by a formula: one of the three kinds.

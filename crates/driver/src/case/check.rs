@@ -36,9 +36,9 @@ pub(super) fn check(file: &CaseFile) -> Checked {
         structure(given, &at)?;
         half_structure(case, given, &at)?;
     }
-    for (number, mode) in case.modes.analytic.iter().enumerate() {
-        let earlier = &case.modes.analytic[..number];
-        analytic(mode, earlier, &format!("modes.analytic.{number}"), &at)?;
+    let formulae = case.modes.formulae();
+    for (number, (key, mode)) in formulae.iter().enumerate() {
+        analytic(mode, &formulae[..number], key, &at)?;
     }
     flight(case, &at)?;
     case.stability
@@ -321,7 +321,12 @@ fn surface(mesh: &Mesh, beta_deg: f64, at: &At<'_>) -> Checked {
     Ok(())
 }
 
-fn analytic(mode: &AnalyticMode, earlier: &[AnalyticMode], key: &str, at: &At<'_>) -> Checked {
+fn analytic(
+    mode: &AnalyticMode,
+    earlier: &[(String, AnalyticMode)],
+    key: &str,
+    at: &At<'_>,
+) -> Checked {
     let name = &mode.name;
     if name.is_empty() || name.starts_with("rigid:") || name.starts_with("elastic:") {
         return Err(at.refuse(
@@ -331,7 +336,7 @@ fn analytic(mode: &AnalyticMode, earlier: &[AnalyticMode], key: &str, at: &At<'_
             "give another name",
         ));
     }
-    if earlier.iter().any(|other| other.name == *name) {
+    if earlier.iter().any(|(_, other)| other.name == *name) {
         return Err(at.refuse(
             &format!("{key}.name"),
             format!("two analytic modes are named `{name}`"),
@@ -368,11 +373,13 @@ fn analytic(mode: &AnalyticMode, earlier: &[AnalyticMode], key: &str, at: &At<'_
         at.all_finite(&format!("{key}.translation"), translation)?;
     }
     if let Some(rotation) = &mode.rotation {
-        at.all_finite(&format!("{key}.rotation.point"), &rotation.point)?;
-        at.all_finite(&format!("{key}.rotation.axis"), &rotation.axis)?;
+        let is_control = key.starts_with("modes.control");
+        let axis_key = format!("{key}.{}", if is_control { "hinge" } else { "rotation" });
+        at.all_finite(&format!("{axis_key}.point"), &rotation.point)?;
+        at.all_finite(&format!("{axis_key}.axis"), &rotation.axis)?;
         if rotation.axis == [0.0; 3] {
             return Err(at.refuse(
-                &format!("{key}.rotation.axis"),
+                &format!("{axis_key}.axis"),
                 format!("the axis of `{name}` has no length"),
                 "there is no direction to turn about",
                 "give for example axis = [0.0, 1.0, 0.0]",

@@ -2,6 +2,7 @@
 
 use super::check::{At, Checked};
 use super::structure::{Matrices, RigidBody, Structure};
+use super::structure_edits;
 
 pub(super) fn structure(given: &Structure, at: &At<'_>) -> Checked {
     if let (Some(_), Some(_)) = (&given.file, &given.matrices) {
@@ -30,6 +31,7 @@ pub(super) fn structure(given: &Structure, at: &At<'_>) -> Checked {
             "put the damping into structure.matrices.damping",
         ));
     }
+    structure_edits::check(given, at)?;
     if let Some(damping) = &given.damping {
         damping
             .as_slice()

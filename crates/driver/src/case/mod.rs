@@ -8,11 +8,12 @@ mod keys;
 mod one_or_many;
 mod source;
 mod structure;
+mod structure_edits;
 mod suggest;
 
 pub use aerodynamics::{
-    AnalyticMode, Axis, Flow, Gaf, Mesh, Modes, Reference, Rotation, SolverChoice, Term,
-    TrailingEdges, Wake, WakeDirection, WakeMode,
+    AnalyticMode, Axis, ControlMode, Flow, Gaf, Mesh, Modes, Reference, Rotation, SolverChoice,
+    Term, TrailingEdges, Wake, WakeDirection, WakeMode,
 };
 pub use flight::{Flight, Range, Refine, Speeds, Stability, Thrust, Trim};
 pub use one_or_many::OneOrMany;
@@ -20,6 +21,7 @@ pub use source::Places;
 pub use structure::{
     DampingModel, Inertia, Matrices, OtherSymmetry, RigidBody, ShapeChange, Structure, Units,
 };
+pub use structure_edits::{AddedMass, Carrier, HingeChange, ModeOverride, TransferChoice};
 
 use crate::failure::Failure;
 use serde::Deserialize;

@@ -1,6 +1,7 @@
 //! Structure: a finite-element result, mass properties, or matrices.
 
 use super::one_or_many::OneOrMany;
+use super::structure_edits::{AddedMass, HingeChange, ModeOverride, TransferChoice};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -45,14 +46,44 @@ pub struct Structure {
     pub damping_model: DampingModel,
     /// Mesh groups and the sets of the structure that carry them.
     pub components: Option<BTreeMap<String, Vec<String>>>,
+    /// What carries the surface; left out: the nearest faces.
+    pub transfer: Option<TransferChoice>,
+    /// Largest error of a mode on the surface, relative to its largest displacement.
+    #[serde(default = "a_tenth")]
+    pub transfer_limit: f64,
+    /// Masses added through the modes.
+    #[serde(default)]
+    pub added_mass: Vec<AddedMass>,
+    /// Hinge stiffnesses changed through the modes.
+    #[serde(default)]
+    pub hinge: Vec<HingeChange>,
+    /// Frequencies and dampings of single modes.
+    #[serde(default, rename = "override")]
+    pub overrides: Vec<ModeOverride>,
     /// Six rigid modes.
     pub rigid_body: Option<RigidBody>,
     /// Matrices given outright.
     pub matrices: Option<Matrices>,
 }
 
+impl Structure {
+    /// Whether the modes are not those of the file.
+    pub(crate) fn is_changed(&self) -> bool {
+        let masses_or_hinges = !(self.added_mass.is_empty() && self.hinge.is_empty());
+        masses_or_hinges
+            || self
+                .overrides
+                .iter()
+                .any(|mode| mode.frequency_hz.is_some())
+    }
+}
+
 fn yes() -> bool {
     true
+}
+
+fn a_tenth() -> f64 {
+    0.1
 }
 
 /// Units of the structure's files.

@@ -3,6 +3,7 @@
 use super::control;
 use super::derivatives::Scales;
 use super::structure::StructureData;
+use super::structure_edits;
 use super::surface::{Surface, Wanted};
 use crate::case::{self, CaseFile, Term};
 use crate::failure::Failure;
@@ -57,28 +58,23 @@ impl Aircraft {
             .as_ref()
             .is_none_or(|given| given.pressure_turning);
         if let Some(model) = &structure.model {
-            let given = file
-                .case
-                .structure
-                .as_ref()
-                .and_then(|s| s.components.clone());
-            let (elastic, transferred) =
-                modal::transfer(model, &surface.mesh, &given.unwrap_or_default())
-                    .map_err(|error| not_transferred(file, &error))?;
+            let settings = structure_edits::transfer_settings(file.case.structure.as_ref());
+            let (elastic, transferred) = modal::transfer(model, &surface.mesh, &settings)
+                .map_err(|error| not_transferred(file, &error))?;
+            structure_edits::within_limit(file, model, &transferred)?;
             modes.extend(elastic);
             report = Some(transferred);
         }
         let elastic = rigid..modes.len();
-        for (number, mode) in file.case.modes.analytic.iter().enumerate() {
-            let place = format!("modes.analytic.{number}");
+        for (place, mode) in &file.case.modes.formulae() {
             let formula = analytic(mode);
             if mode.group.is_none() {
-                of_kind(file, &formula, symmetry, &place)?;
+                of_kind(file, &formula, symmetry, place)?;
             }
             let mut shape = formula.on(vertices).map_err(|error| {
                 Failure::input(
                     error.to_string(),
-                    file.places.of(&place),
+                    file.places.of(place),
                     "its row and column of Q would be undefined",
                     "correct the shape of the mode",
                 )
@@ -95,7 +91,7 @@ impl Aircraft {
                     },
                 )?;
             }
-            within_plane(file, &shape, &surface, &place)?;
+            within_plane(file, &shape, &surface, place)?;
             modes.push(shape);
         }
         if modes.is_empty() {
@@ -146,7 +142,7 @@ impl Aircraft {
         let analytic = if has_matrices {
             0
         } else {
-            file.case.modes.analytic.len()
+            file.case.modes.analytic.len() + file.case.modes.control.len()
         };
         self.asked - analytic
     }

@@ -135,9 +135,12 @@ impl Derivatives {
 
 /// Analytic modes that move named groups of the surface.
 fn control_modes(file: &CaseFile, aircraft: &Aircraft) -> Vec<usize> {
-    let analytic = &file.case.modes.analytic;
+    let formulae = file.case.modes.formulae();
     let is_control = |name: &str| {
-        let mode = analytic.iter().find(|mode| mode.name == name);
+        let mode = formulae
+            .iter()
+            .map(|formula| &formula.1)
+            .find(|mode| mode.name == name);
         mode.is_some_and(|mode| mode.group.is_some())
     };
     (0..aircraft.modes.len())

@@ -8,6 +8,7 @@ pub(crate) mod forces;
 pub(crate) mod own_forces;
 pub(crate) mod smooth;
 pub(crate) mod structure;
+mod structure_edits;
 pub(crate) mod surface;
 pub(crate) mod surrogate;
 pub(crate) mod sweep;

@@ -1,6 +1,7 @@
 //! The structure: finite-element modes, mass properties, and the matrices of
 //! the eigenproblem.
 
+use super::structure_edits;
 use crate::case::{self, CaseFile, DampingModel, OneOrMany};
 use crate::failure::Failure;
 use faer::Mat;
@@ -132,6 +133,10 @@ fn not_loaded(error: &modal::StructureError, place: String) -> Failure {
             "give a structure that is symmetric about y = 0 in mesh axes (structure.axes, \
              structure.origin), a half structure, or mesh the whole aircraft",
         ),
+        StructureError::Edit(_) => (
+            "the modes would not be those of the changed structure",
+            "correct [[structure.added_mass]], [[structure.hinge]] or [[structure.override]]",
+        ),
         _ => (
             "modes that are wrong or incomplete give wrong roots without any sign of it",
             "correct the file or the keys of [structure]; `fladder modes FILE` shows what a file \
@@ -175,6 +180,7 @@ fn settings(
             cg: body.and_then(|body| body.cg).map(Vec3::from),
             inertia: body.and_then(|body| body.inertia.as_ref()).map(inertia),
         },
+        edits: structure_edits::edits(given),
     })
 }
 
@@ -184,8 +190,10 @@ fn format_named(file: &CaseFile, name: &str) -> Result<modal::Format, Failure> {
             format!("the format `{name}` is not known"),
             file.places.of("structure.format"),
             "the file cannot be read",
-            "leave the key out to have the format told from the content; known are calculix-frd \
-             and fladder-json",
+            format!(
+                "leave the key out to have the format told from the content; known are {}",
+                modal::Format::names().collect::<Vec<_>>().join(", ")
+            ),
         )
     })
 }
@@ -328,6 +336,31 @@ fn damping(
                 "give one number for all modes, or one for each",
             ));
         }
+    }
+    for over in &given.overrides {
+        let Some(coefficient) = over.damping else {
+            continue;
+        };
+        let first = given.modes.map_or(1, |[first, _]| first);
+        let place = over
+            .mode
+            .checked_sub(first)
+            .filter(|place| *place < elastic);
+        let Some(place) = place else {
+            return Err(Failure::input(
+                format!(
+                    "damping is given for elastic mode {}, which is not used",
+                    over.mode
+                ),
+                file.places.of("structure.override"),
+                "it would have no effect",
+                format!(
+                    "the elastic modes in use are {first} to {}",
+                    first + elastic - 1
+                ),
+            ));
+        };
+        values[rigid + place] = coefficient;
     }
     Ok(match given.damping_model {
         DampingModel::Viscous => stability::DampingModel::Viscous(values),

@@ -141,7 +141,7 @@ fn look_further(
     let plan = match case {
         Some(file) => {
             let aircraft = Aircraft::on(file, surface.clone())?;
-            report::structure(console, &aircraft.structure);
+            report::structure(console, &aircraft.structure, aircraft.transfer.as_ref());
             report::transfer(console, aircraft.transfer.as_ref());
             findings.modes = aircraft.mode_names();
             let problem = own_forces::problem(file, &aircraft);
@@ -233,7 +233,7 @@ fn check_given_forces(session: &Session, file: &CaseFile) -> Result<(), Failure>
     use crate::chain::forces::Forces;
     use crate::chain::structure::StructureData;
     let structure = StructureData::read(file)?;
-    report::structure(&session.console, &structure);
+    report::structure(&session.console, &structure, None);
     let forces = Forces::given(file, &structure)?;
     session.console.notes(&forces.notes);
     session.console.say(format!(

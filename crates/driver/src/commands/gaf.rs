@@ -29,7 +29,7 @@ pub(crate) fn gaf(
     }
     let aircraft = Aircraft::read(&file)?;
     report::surface(console, &aircraft.surface);
-    report::structure(console, &aircraft.structure);
+    report::structure(console, &aircraft.structure, aircraft.transfer.as_ref());
     report::transfer(console, aircraft.transfer.as_ref());
     let own = own_forces::obtain(&file, &aircraft, &session.open_cache(&file), console)?;
     report::own_forces(console, &file, &aircraft, &own);

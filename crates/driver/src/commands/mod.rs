@@ -10,7 +10,7 @@ mod sweep;
 pub(crate) use cache::cache;
 pub(crate) use check::check;
 pub(crate) use gaf::gaf;
-pub(crate) use modes::modes;
+pub(crate) use modes::{Wanted as WantedModes, modes};
 pub(crate) use run::run;
 pub(crate) use sweep::sweep;
 

@@ -21,14 +21,17 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
     let out = session.results_folder(&file);
     let (structure, forces) = if forces::are_given(&file) {
         let structure = StructureData::read(&file)?;
-        report::structure(console, &structure);
+        report::structure(console, &structure, None);
         let forces = Forces::given(&file, &structure)?;
         (structure, forces)
     } else {
         let aircraft = Aircraft::read(&file)?;
         report::surface(console, &aircraft.surface);
-        report::structure(console, &aircraft.structure);
+        report::structure(console, &aircraft.structure, aircraft.transfer.as_ref());
         report::transfer(console, aircraft.transfer.as_ref());
+        for (name, picture) in report::mode_pictures(&aircraft) {
+            session.write(&out.join("modes").join(name), picture)?;
+        }
         let own = own_forces::obtain(&file, &aircraft, &session.open_cache(&file), console)?;
         report::own_forces(console, &file, &aircraft, &own);
         session.derivatives(&file, &aircraft, &own, Some(&out))?;

@@ -1,15 +1,18 @@
-//! Pictures of a sweep as SVG: the root locus and the V-g-f diagram.
+//! Pictures as SVG: the root locus and the V-g-f diagram of a sweep, and modes on the
+//! surface.
 
 mod axis;
 mod flutter_diagram;
 mod label;
 mod layout;
+mod mode_shape;
 mod panel;
 mod root_locus;
 mod style;
 mod svg;
 
 pub use flutter_diagram::flutter_diagram;
+pub use mode_shape::{ModePicture, mode_shape};
 pub use root_locus::root_locus;
 
 use fladder_stability::{MethodResult, Methods};

@@ -89,6 +89,18 @@ impl Svg {
         ));
     }
 
+    /// Triangles of one colour; a thin border closes the seams between them.
+    pub(super) fn triangles(&mut self, triangles: &[[[i32; 2]; 3]], colour: &str) {
+        let mut path = String::new();
+        for [[x, y], [x1, y1], [x2, y2]] in triangles {
+            // Writing to a string cannot fail.
+            let _ = write!(path, "M{x} {y}L{x1} {y1} {x2} {y2}z");
+        }
+        self.push(&format!(
+            r#"<path d="{path}" fill="{colour}" stroke="{colour}" stroke-width="0.6"/>"#
+        ));
+    }
+
     pub(super) fn circle(
         &mut self,
         centre: [f64; 2],

@@ -1,8 +1,6 @@
 //! Nastran bulk data: `GRID`, `CTRIA3`, `CQUAD4` and `PLOTEL` in small, large or free fields.
 //!
-//! Small fields are 8 columns wide, large ones 16 (the card's name ends in `*`), free ones
-//! stand between commas; a card goes on in lines whose first field is empty or begins with
-//! `+` or `*`. Elements of one property make the surface group `pshell_PID`; `PLOTEL` lines
+//! Cards are those of [`crate::bulk`]. Elements of one property make the surface group `pshell_PID`; `PLOTEL` lines
 //! make the curve group `plotel`. Quadrilaterals are cut along the better diagonal.
 
 use std::collections::{BTreeMap, HashMap};
@@ -12,10 +10,7 @@ use super::Place;
 use super::cursor::{Malformed, WRITE_AGAIN};
 use super::draft::Draft;
 use crate::Vec3;
-
-/// Width of a small field and of a tab stop.
-const SMALL: usize = 8;
-const LARGE: usize = 16;
+use crate::bulk::{Card, Cards, is_begin_bulk, is_end_of_data, real};
 
 /// Whether the text has lines of bulk data.
 pub(super) fn is_bulk_data(text: &[u8]) -> bool {
@@ -35,40 +30,21 @@ pub(super) fn is_bulk_data(text: &[u8]) -> bool {
 pub(super) fn parse(bytes: &[u8]) -> Result<Draft, Malformed> {
     let text = String::from_utf8_lossy(bytes);
     let mut reader = Reader::default();
-    let mut card: Option<Card> = None;
+    let mut cards = Cards::default();
     // Lines before BEGIN BULK are about the solution, not about the mesh.
-    let begin = text.lines().position(|line| {
-        line.get(..10)
-            .is_some_and(|word| word.eq_ignore_ascii_case("begin bulk"))
-    });
+    let begin = text.lines().position(is_begin_bulk);
     let first = begin.map_or(0, |begin| begin + 1);
     let mut is_ended = false;
     for (number, line) in text.lines().enumerate().skip(first) {
-        let line = line.split('$').next().unwrap_or_default().trim_end();
-        if line.trim().is_empty() {
-            continue;
-        }
-        if line.trim().eq_ignore_ascii_case("enddata") {
+        if is_end_of_data(line) {
             is_ended = true;
             break;
         }
-        let (name, fields) = fields(line);
-        if name.is_empty() || name.starts_with(['+', '*']) {
-            if let Some(card) = &mut card {
-                card.fields.extend(fields);
-            }
-            continue;
-        }
-        let next = Card {
-            name,
-            fields,
-            line: number + 1,
-        };
-        if let Some(whole) = card.replace(next) {
+        if let Some(whole) = cards.push(line, number + 1) {
             reader.take(&whole)?;
         }
     }
-    if let Some(whole) = card {
+    if let Some(whole) = cards.finish() {
         reader.take(&whole)?;
     }
     if begin.is_some() && !is_ended {
@@ -78,81 +54,6 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Draft, Malformed> {
         ));
     }
     Ok(reader.finish())
-}
-
-/// A card with its continuations.
-struct Card {
-    /// Without `*`, in capitals.
-    name: String,
-    fields: Vec<String>,
-    line: usize,
-}
-
-/// Name and data fields of a line; those left out are empty.
-fn fields(line: &str) -> (String, Vec<String>) {
-    let name_of = |text: &str| {
-        let name = text.trim().to_ascii_uppercase();
-        if name.starts_with('*') {
-            name
-        } else {
-            name.trim_end_matches('*').to_owned()
-        }
-    };
-    let is_large = line
-        .split([',', '\t', ' '])
-        .next()
-        .is_some_and(|word| word.contains('*'));
-    let (width, count) = if is_large { (LARGE, 4) } else { (SMALL, 8) };
-    // A decimal comma in a fixed field does not make the card a free one.
-    let is_free = line
-        .split_once(',')
-        .is_some_and(|(name, _)| !name.trim().contains(' '));
-    let (name, mut data): (String, Vec<String>) = if is_free {
-        let mut words = line.split(',').map(|word| word.trim().to_owned());
-        let name = words.next().unwrap_or_default();
-        (name_of(&name), words.take(count).collect())
-    } else {
-        let columns: Vec<char> = without_tabs(line).chars().collect();
-        let piece = |from: usize, to: usize| -> String {
-            let to = to.min(columns.len());
-            columns.get(from..to).unwrap_or_default().iter().collect()
-        };
-        let field = |i: usize| {
-            let from = SMALL + i * width;
-            piece(from, from + width).trim().to_owned()
-        };
-        (name_of(&piece(0, SMALL)), (0..count).map(field).collect())
-    };
-    data.resize(count, String::new());
-    (name, data)
-}
-
-/// Tabs reach to the next column that 8 divides.
-fn without_tabs(line: &str) -> String {
-    let mut text = String::with_capacity(line.len());
-    let mut column = 0;
-    for c in line.chars() {
-        let count = if c == '\t' { SMALL - column % SMALL } else { 1 };
-        text.extend(std::iter::repeat_n(if c == '\t' { ' ' } else { c }, count));
-        column += count;
-    }
-    text
-}
-
-/// A number as Nastran writes it: the exponent may lack its letter, or have a D.
-fn real(text: &str) -> Option<f64> {
-    let plain = text.replace(['d', 'D'], "e");
-    if let Ok(value) = plain.parse() {
-        return Some(value);
-    }
-    let sign = plain
-        .char_indices()
-        .skip(1)
-        .find(|(_, c)| matches!(c, '+' | '-'))?
-        .0;
-    format!("{}e{}", &plain[..sign], &plain[sign..])
-        .parse()
-        .ok()
 }
 
 #[derive(Default)]
@@ -269,11 +170,16 @@ impl Reader {
     }
 }
 
-impl Card {
-    fn field(&self, i: usize) -> &str {
-        self.fields.get(i).map_or("", String::as_str)
-    }
+/// What is taken from a card, and what is said of one that cannot be.
+trait Take {
+    fn fault(&self, what: impl Into<String>, remedy: &str) -> Malformed;
+    fn local_axes(&self, i: usize) -> Malformed;
+    fn number(&self, i: usize) -> Result<u64, Malformed>;
+    fn real(&self, i: usize) -> Result<f64, Malformed>;
+    fn wrong(&self, i: usize, kind: &str) -> Malformed;
+}
 
+impl Take for Card {
     fn fault(&self, what: impl Into<String>, remedy: &str) -> Malformed {
         Malformed {
             place: Place::Line(self.line),
@@ -313,18 +219,5 @@ impl Card {
             format!("field {} of {} is `{shown}`, not {kind}", i + 2, self.name),
             "correct the card",
         )
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_without_an_exponent_letter_are_read() {
-        let read = ["1.5-3", "-2.+1", "7.D0", "4.25", "-.5E2"].map(real);
-        assert_eq!(read, [1.5e-3, -20.0, 7.0, 4.25, -50.0].map(Some));
-        assert_eq!(real("1..5"), None);
-        assert_eq!(real(""), None);
     }
 }
