@@ -39,14 +39,14 @@ const STEADY: Goals = Goals {
 
 /// Cells of the fine steady wings, of which there are 28.
 const STEADY_WING: Cells = Cells {
-    chord: 32,
-    half_span: 12,
+    chord: 72,
+    half_span: 28,
 };
 
 /// Cells of the fine oscillating wings.
 const WING: Cells = Cells {
-    chord: 40,
-    half_span: 16,
+    chord: 64,
+    half_span: 24,
 };
 
 impl Part {

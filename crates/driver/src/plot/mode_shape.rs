@@ -204,7 +204,7 @@ struct Facet {
 fn paint(svg: &mut Svg, mesh: &TriMesh, moved: &[Vec3], value: &[f64], page: &Page) {
     let mut raster = 1.0;
     let mut facets = facets(mesh, moved, value, page, raster);
-    while facets.len() > MOST_TRIANGLES && raster < 4.0 {
+    while facets.len() > MOST_TRIANGLES && raster < 12.0 {
         raster += 1.0;
         facets = self::facets(mesh, moved, value, page, raster);
     }
@@ -313,7 +313,7 @@ mod tests {
 
     #[test]
     fn large_surfaces_are_drawn_with_fewer_triangles() {
-        let mesh = icosphere(6);
+        let mesh = icosphere(65);
         let shape: Vec<Vec3> = mesh.vertices.clone();
         let picture = ModePicture {
             title: "",
