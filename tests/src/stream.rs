@@ -16,8 +16,8 @@ use fladder_bem::{Flow, TransferModel};
 use fladder_mesh::shapes::ellipsoid;
 use fladder_mesh::{Frame, TriMesh, Vec3};
 use fladder_stability::{
-    FromFunction, GafPoint, GafTable, Method, OperatingPoint, PiecewiseQuadratic, PkForm,
-    RIGID_NAMES, RigidBody, Sweep, System,
+    FromFunction, GafPoint, GafTable, Method, OperatingPoint, PiecewiseQuadratic, RIGID_NAMES,
+    RigidBody, Sweep, System,
 };
 
 use crate::case::{Fault, Setup, rigid_modes};
@@ -242,13 +242,9 @@ fn roots(mesh: &TriMesh, body: RigidBody) -> Result<Vec<c64>, Fault> {
     });
     let schedule = vec![OperatingPoint::new(1.0, 1.0)];
     let sweep = Sweep {
-        structure: &system,
-        schedule: &schedule,
-        table: &table,
-        fit: &fit,
         smooth: Some(&exact),
         method: Method::P2,
-        pk_form: PkForm::Complex,
+        ..Sweep::new(&system, &schedule, &table, &fit)
     };
     let result = sweep.run(&()).map_err(|e| stability(&e))?;
     let p2 = result.methods.p2.ok_or_else(|| stability(&"no p2 roots"))?;

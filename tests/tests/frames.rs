@@ -14,7 +14,7 @@ use fladder_mesh::shapes::NacaWing;
 use fladder_mesh::{Frame, SurfaceMode, TriMesh, Vec3};
 use fladder_stability::{
     DEFAULT_DAMPING_LIMIT, FromFunction, GafPoint, GafTable, Method, OperatingPoint,
-    PiecewiseQuadratic, PkForm, RigidBody, Structure, Sweep, System,
+    PiecewiseQuadratic, RigidBody, Structure, Sweep, System,
 };
 
 const SEMICHORD: f64 = 0.125;
@@ -150,13 +150,9 @@ fn roots(frame: Frame, speeds: &[f64]) -> Vec<Vec<c64>> {
         .map(|&u| OperatingPoint::new(u, DENSITY))
         .collect();
     let sweep = Sweep {
-        structure,
-        schedule: &schedule,
-        table: &table,
-        fit: &fit,
         smooth: Some(&exact),
         method: Method::P2,
-        pk_form: PkForm::Complex,
+        ..Sweep::new(structure, &schedule, &table, &fit)
     };
     let result = sweep.run(&()).expect("a sweep");
     let polished = result.methods.polished.expect("polished roots");

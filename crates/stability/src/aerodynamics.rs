@@ -38,11 +38,28 @@ pub trait Aerodynamics: Sync {
         None
     }
 
+    /// The model as a combination of fixed real matrices, where it is one:
+    /// then many points are evaluated together.
+    fn expansion(&self) -> Option<&dyn Expansion> {
+        None
+    }
+
     /// The model itself where it is rational: then all its roots can be had
     /// from one standard eigenproblem.
     fn as_rational(&self) -> Option<&RationalFit> {
         None
     }
+}
+
+/// $Q(p) = \sum_jw_j(p)\,R_j$ with real matrices $R_j$ and scalar functions
+/// $w_j$.
+pub trait Expansion: Sync {
+    /// $R_j$ in order.
+    fn matrices(&self) -> Vec<&Mat<f64>>;
+    /// $w_j(p)$ in the same order.
+    fn weights(&self, p: c64) -> Vec<c64>;
+    /// $\mathrm dw_j/\mathrm dp$.
+    fn slopes(&self, p: c64) -> Vec<c64>;
 }
 
 /// Balances truncation (proportional to the step) against cancellation

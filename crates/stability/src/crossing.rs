@@ -1,19 +1,38 @@
 //! Where a branch passes from decay to growth, solved between the speeds.
 //!
-//! The damping $g$ of the branch as a function of the sweep's parameter is
-//! brought to zero by the false position of Illinois, with bisection where it
-//! gains too little; each step solves the eigenproblem anew. On a fit that
-//! jumps across an edge it ends at the jump.
+//! Where $Q(p)$ is smooth Newton's iteration in vector, frequency and speed
+//! ([`flutter_point`](crate::flutter_point)) places a crossing. Else, and for
+//! real roots, the damping $g$ of the branch as a function of the sweep's
+//! parameter is brought to zero by the false position of Illinois, with
+//! bisection where it gains too little; each step solves the eigenproblem
+//! anew. On a fit that jumps across an edge it ends at the jump.
 
 use faer::c64;
 
 use crate::eigenpair::Eigenpair;
+use crate::sensitivity::Sensitivity;
 use crate::track::Track;
 
 /// Finds the root of a branch at a place between two speeds.
 pub(crate) trait Resolver: Sync {
     /// Root nearest to `guess` at `parameter`.
     fn near(&self, parameter: f64, guess: &Eigenpair) -> Option<Eigenpair>;
+
+    /// Place within `bounds` where the root of `guess` has no damping, and the
+    /// root there; none where the method has no iteration for it.
+    fn crossing(
+        &self,
+        _parameter: f64,
+        _guess: &Eigenpair,
+        _bounds: [f64; 2],
+    ) -> Option<(f64, Eigenpair)> {
+        None
+    }
+
+    /// Derivatives of a crossing with respect to the sweep's parameters.
+    fn sensitivities(&self, _parameter: f64, _pair: &Eigenpair) -> Vec<Sensitivity> {
+        Vec::new()
+    }
 }
 
 /// Width of the bracket, in steps of the sweep, at which the search ends.
@@ -55,6 +74,15 @@ pub(crate) struct Bracketed {
     ends: [(f64, Eigenpair); 2],
 }
 
+impl Bracketed {
+    pub(crate) fn new(track: usize, low: (f64, Eigenpair), high: (f64, Eigenpair)) -> Self {
+        Self {
+            track,
+            ends: [low, high],
+        }
+    }
+}
+
 /// Sign changes between consecutive speeds of a track.
 pub(crate) fn sign_changes(number: usize, track: &Track) -> Vec<Bracketed> {
     track
@@ -64,11 +92,11 @@ pub(crate) fn sign_changes(number: usize, track: &Track) -> Vec<Bracketed> {
         .filter(|(_, pair)| (pair[0].p.re > 0.0) != (pair[1].p.re > 0.0))
         .map(|(step, pair)| {
             let start = (track.first + step) as f64;
-            let ends = [(start, pair[0].clone()), (start + 1.0, pair[1].clone())];
-            Bracketed {
-                track: number,
-                ends,
-            }
+            Bracketed::new(
+                number,
+                (start, pair[0].clone()),
+                (start + 1.0, pair[1].clone()),
+            )
         })
         .collect()
 }
@@ -93,10 +121,7 @@ pub(crate) fn before_the_start(
             return None;
         }
         if pair.p.re <= 0.0 {
-            return Some(Bracketed {
-                track: number,
-                ends: [(next, pair), (place, head)],
-            });
+            return Some(Bracketed::new(number, (next, pair), (place, head)));
         }
         (place, head) = (next, pair);
     }
@@ -108,6 +133,14 @@ pub(crate) fn before_the_start(
 pub(crate) fn locate(bracket: &Bracketed, resolver: &dyn Resolver) -> Option<Found> {
     let [mut low, mut high] = bracket.ends.clone();
     let is_rising = high.1.p.re > 0.0;
+    if let Some((parameter, pair)) = at_once(&low, &high, resolver) {
+        return Some(Found {
+            track: bracket.track,
+            parameter,
+            pair,
+            is_rising,
+        });
+    }
     let mut weights = [low.1.p.re, high.1.p.re];
     let mut last_side = None;
     for step in 0..MAX_STEPS {
@@ -168,8 +201,27 @@ pub(crate) fn locate(bracket: &Bracketed, resolver: &dyn Resolver) -> Option<Fou
     })
 }
 
+/// The crossing of a complex root from a linear start.
+fn at_once(
+    low: &(f64, Eigenpair),
+    high: &(f64, Eigenpair),
+    resolver: &dyn Resolver,
+) -> Option<(f64, Eigenpair)> {
+    if low.1.p.im == 0.0 || high.1.p.im == 0.0 {
+        return None;
+    }
+    let fraction = low.1.p.re / (low.1.p.re - high.1.p.re);
+    let parameter = low.0 + fraction * (high.0 - low.0);
+    let guess = between(low, high, parameter);
+    resolver.crossing(parameter, &guess, [low.0, high.0])
+}
+
 /// Linear in $p$, with the vectors of the nearer end.
-fn between(low: &(f64, Eigenpair), high: &(f64, Eigenpair), parameter: f64) -> Eigenpair {
+pub(crate) fn between(
+    low: &(f64, Eigenpair),
+    high: &(f64, Eigenpair),
+    parameter: f64,
+) -> Eigenpair {
     let fraction = (parameter - low.0) / (high.0 - low.0);
     let p: c64 = low.1.p + (high.1.p - low.1.p) * fraction;
     let nearer = if fraction < 0.5 { &low.1 } else { &high.1 };

@@ -14,15 +14,21 @@
 
 mod aerodynamics;
 mod assignment;
+mod complete;
+mod continuation;
 mod count;
 mod crossing;
 mod divergence;
 mod eigenpair;
+mod events;
 mod flight;
+mod flutter_point;
 mod frame;
 mod gaf;
+mod hump;
 mod linalg;
 mod p2;
+mod pencil;
 mod pk;
 mod polish;
 mod rational;
@@ -31,6 +37,7 @@ mod report;
 mod resolvers;
 mod results;
 mod rigid;
+mod sensitivity;
 mod spline;
 mod state_space;
 mod static_sweep;
@@ -39,8 +46,9 @@ mod sweep;
 mod system;
 mod track;
 mod vector_fit;
+mod winding;
 
-pub use aerodynamics::{Aerodynamics, FromFunction};
+pub use aerodynamics::{Aerodynamics, Expansion, FromFunction};
 pub use eigenpair::Eigenpair;
 pub use flight::{Flight, Thrust, TrimLoads};
 pub use frame::{Frame, FrameError, to_body_frame};
@@ -52,11 +60,12 @@ pub use p2::{
 pub use pk::PkForm;
 pub use rational::RationalFit;
 pub use results::{
-    Branch, Crossing, Divergence, Kind, MethodResult, Methods, SCHEMA, SweepResult,
-    UnstableStart,
+    Branch, Count, Crossing, Divergence, Hump, Kind, MethodResult, Methods, SCHEMA,
+    SweepResult, TurnOfPair, UnstableStart,
 };
 pub use rigid::{Matrix6, RIGID_NAMES, RigidBody, RigidBodyError, RigidModes};
+pub use sensitivity::{Parameter, Sensitivity};
 pub use spline::AxisSpline;
 pub use structure::{FlightPath, OperatingPoint, Schedule, StructuralMatrices, Structure};
-pub use sweep::{Method, Progress, Sweep, SweepError};
+pub use sweep::{Method, Progress, Search, Sweep, SweepError};
 pub use system::{DampingModel, System, SystemError};

@@ -196,6 +196,13 @@ pub(crate) fn product(left: MatRef<'_, c64>, right: MatRef<'_, c64>) -> Mat<c64>
     out
 }
 
+/// Matrix product `A B` of real matrices.
+pub(crate) fn real_product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64> {
+    let mut out = Mat::zeros(left.nrows(), right.ncols());
+    matmul(out.as_mut(), Accum::Replace, left, right, 1.0, Par::Seq);
+    out
+}
+
 /// Product `A x` with a vector.
 pub(crate) fn apply(matrix: MatRef<'_, c64>, vector: &[c64]) -> Vec<c64> {
     let mut out = vec![c64::new(0.0, 0.0); matrix.nrows()];

@@ -19,7 +19,7 @@ use faer::{Mat, c64};
 
 use crate::eigenpair::{Eigenpair, inverse_iteration};
 use crate::linalg::{Lu, NoConvergence, apply, eigenvalues, inner, least_squares};
-use crate::spline::AxisSpline;
+use crate::spline::AxisForces;
 use crate::structure::{Hysteresis, Reduced};
 
 /// How damping enters the aerodynamic matrix.
@@ -63,7 +63,7 @@ pub(crate) struct PkRoots {
 /// The problem at one speed.
 pub(crate) struct PkProblem<'a> {
     pub(crate) reduced: &'a Reduced,
-    pub(crate) spline: &'a AxisSpline,
+    pub(crate) forces: &'a dyn AxisForces,
     pub(crate) form: PkForm,
 }
 
@@ -76,11 +76,11 @@ struct Pencil {
 impl PkProblem<'_> {
     fn pencil(&self, k: f64) -> Pencil {
         let order = self.reduced.order();
-        let q = self.spline.q(k);
+        let q = self.forces.q(k);
         let (constant, linear) = match self.form {
             PkForm::Complex => (q, Mat::zeros(order, order)),
             PkForm::RealMatrices => {
-                let slope = (k.abs() < APERIODIC).then(|| self.spline.slope(k));
+                let slope = (k.abs() < APERIODIC).then(|| self.forces.slope(k));
                 let damping = Mat::from_fn(order, order, |i, j| {
                     let value = slope
                         .as_ref()
@@ -93,7 +93,7 @@ impl PkProblem<'_> {
                 )
             }
             PkForm::GMethod => {
-                let slope = self.spline.slope(k);
+                let slope = self.forces.slope(k);
                 (
                     Mat::from_fn(order, order, |i, j| q[(i, j)] - slope[(i, j)] * k),
                     Mat::from_fn(order, order, |i, j| slope[(i, j)] * c64::new(0.0, -1.0)),
@@ -196,7 +196,7 @@ impl PkProblem<'_> {
     /// roots of a body in flight.
     fn displacements_without_force(&self) -> Result<usize, NoConvergence> {
         let order = self.reduced.order();
-        let at_rest = self.reduced.loads(&self.spline.q(0.0));
+        let at_rest = self.reduced.loads(&self.forces.q(0.0));
         let weight = |mode: usize| 1.0 / self.reduced.mass[(mode, mode)].sqrt();
         let stiffness = Mat::from_fn(order, order, |i, j| {
             c64::new(self.reduced.stiffness[(i, j)] - at_rest[(i, j)].re, 0.0)

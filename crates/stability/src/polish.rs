@@ -1,18 +1,19 @@
-//! Newton's iteration on the nonlinear eigenproblem.
+//! Newton's iteration on the nonlinear eigenproblem, for many roots at once.
 //!
-//! Unknowns $x$ and $p$, equations $T(p)x = 0$ and $y^Hx = 1$:
-//! $$ \begin{bmatrix} T & T'x\\ y^H & 0\end{bmatrix}
-//!    \begin{bmatrix}\Delta x\\ \Delta p\end{bmatrix} =
-//!    -\begin{bmatrix} Tx\\ y^Hx - 1\end{bmatrix} $$
-//! with the rows of $T$ scaled to unit size. It wants a $Q(p)$ that is smooth,
-//! not the piecewise one: there it never settles across an edge.
+//! Unknowns $x$ and $p$, equations $T(p)x = 0$ and $y^Hx = 1$. Eliminated, a
+//! step is one solution with $T$:
+//! $$ v = T^{-1}T'x,\qquad p \leftarrow p - \frac1{y^Hv},\qquad
+//!    x \leftarrow \frac v{y^Hv} $$
+//! It wants a $Q(p)$ that is smooth, not the piecewise one: there it never
+//! settles across an edge.
 
 use faer::{Mat, c64};
 
 use crate::aerodynamics::Aerodynamics;
 use crate::eigenpair::{Eigenpair, inverse_iteration, turned_to_unit};
-use crate::linalg::{Lu, inner};
+use crate::linalg::{Lu, apply, inner};
 use crate::p2::{REAL_ROOT, ZERO_ROOT};
+use crate::pencil::Pencil;
 use crate::structure::{Hysteresis, Reduced};
 
 /// Steps of $p$ are cut to this length.
@@ -28,10 +29,175 @@ const CONVERGED: f64 = 1e-13;
 /// above.
 const ACCEPTABLE: f64 = 1e-10;
 
+/// Steps must shrink by this before the next is foretold.
+const LEAST_GAIN: f64 = 0.1;
+
 const MAX_STEPS: usize = 20;
 
 /// Roots closer than this, relative to $1+|p|$, are one.
 const SAME_ROOT: f64 = 1e-8;
+
+/// Where an iteration starts.
+#[derive(Clone, Debug)]
+pub(crate) struct Seed {
+    pub(crate) p: c64,
+    /// Right vector; without it inverse iteration finds one.
+    pub(crate) vector: Option<Vec<c64>>,
+}
+
+impl Seed {
+    pub(crate) fn new(p: c64) -> Self {
+        Self { p, vector: None }
+    }
+}
+
+/// A root and its right vector, of unit length.
+#[derive(Clone, Debug)]
+pub(crate) struct Root {
+    pub(crate) p: c64,
+    pub(crate) vector: Vec<c64>,
+}
+
+/// One iteration under way.
+struct Way {
+    seed: c64,
+    p: c64,
+    x: Vec<c64>,
+    anchor: Vec<c64>,
+    last_step: f64,
+    state: State,
+    rules: Rules,
+}
+
+/// What the problem says of an iteration.
+#[derive(Clone, Copy)]
+struct Rules {
+    /// $T'$ is exact and steps shrink quadratically.
+    is_quadratic: bool,
+    /// With hysteretic damping $T$ holds above the real axis alone.
+    is_hysteretic: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum State {
+    Running,
+    Found,
+    Lost,
+}
+
+/// Refines every seed; `None` where the iteration fails or leaves the
+/// neighbourhood.
+pub(crate) fn newton(pencil: &Pencil<'_>, seeds: Vec<Seed>) -> Vec<Option<Root>> {
+    let mut ways: Vec<Way> = seeds
+        .into_iter()
+        .map(|seed| Way::new(pencil, seed))
+        .collect();
+    for _ in 0..MAX_STEPS {
+        let running: Vec<usize> = (0..ways.len())
+            .filter(|&way| ways[way].state == State::Running)
+            .collect();
+        if running.is_empty() {
+            break;
+        }
+        let points: Vec<c64> = running.iter().map(|&way| ways[way].p).collect();
+        pencil.each_operator_and_slope(&points, |number, operator, slope| {
+            ways[running[number]].step(operator, &slope);
+        });
+    }
+    ways.into_iter().map(Way::finish).collect()
+}
+
+impl Way {
+    fn new(pencil: &Pencil<'_>, seed: Seed) -> Self {
+        let start = seed.vector.unwrap_or_else(|| {
+            let operator = pencil.operator(seed.p, Reduced::hysteresis_at(seed.p));
+            inverse_iteration(seed.p, operator).right
+        });
+        let scale = turned_to_unit(&start);
+        let anchor: Vec<c64> = start.into_iter().map(|value| value * scale).collect();
+        Self {
+            rules: Rules {
+                is_quadratic: pencil.aerodynamics.expansion().is_some(),
+                is_hysteretic: pencil.reduced.is_hysteretic(),
+            },
+            seed: seed.p,
+            p: seed.p,
+            x: anchor.clone(),
+            anchor,
+            last_step: f64::INFINITY,
+            state: State::Running,
+        }
+    }
+
+    fn step(&mut self, operator: Mat<c64>, slope: &Mat<c64>) {
+        let mut lu = Lu::new(operator);
+        lu.guard_pivots();
+        let image = apply(slope.as_ref(), &self.x);
+        let mut solution = Mat::from_fn(image.len(), 1, |i, _| image[i]);
+        lu.solve(solution.as_mut());
+        let v = solution.col_as_slice(0);
+        let gain = inner(&self.anchor, v);
+        let mut change = -1.0 / gain;
+        if self.seed.im == 0.0 {
+            change.im = 0.0;
+        }
+        let length = change.norm();
+        if !length.is_finite() {
+            self.state = State::Lost;
+            return;
+        }
+        let is_cut = length > LONGEST_STEP;
+        self.p += if is_cut {
+            change * (LONGEST_STEP / length)
+        } else {
+            change
+        };
+        self.x = v.iter().map(|value| value / gain).collect();
+        let limit = CONVERGED * (1.0 + self.p.norm());
+        let has_stalled = length >= 0.5 * self.last_step && length < ACCEPTABLE;
+        if length < limit || has_stalled || self.next_step(length) < limit {
+            self.state = State::Found;
+        } else if (self.p - self.seed).norm() > 3.0 * LONGEST_WAY {
+            self.state = State::Lost;
+        }
+        self.last_step = length;
+    }
+
+    /// Length that the next step will have, from this one and the last.
+    fn next_step(&self, length: f64) -> f64 {
+        let ratio = length / self.last_step;
+        if ratio > LEAST_GAIN || self.last_step.is_infinite() {
+            return f64::INFINITY;
+        }
+        let gain = if self.rules.is_quadratic {
+            ratio * ratio
+        } else {
+            ratio
+        };
+        length * gain
+    }
+
+    fn finish(self) -> Option<Root> {
+        if self.state != State::Found || (self.p - self.seed).norm() > LONGEST_WAY {
+            return None;
+        }
+        let has_left = self.seed.im > 0.0 && self.p.im < REAL_ROOT;
+        if self.rules.is_hysteretic && has_left {
+            return None;
+        }
+        let (mut p, mut x) = (self.p, self.x);
+        if p.im.abs() < REAL_ROOT {
+            p = c64::new(p.re, 0.0);
+        }
+        if p.im < 0.0 {
+            p = p.conj();
+            x.iter_mut().for_each(|value| *value = value.conj());
+        }
+        let scale = turned_to_unit(&x);
+        x.iter_mut().for_each(|value| *value *= scale);
+        Some(Root { p, vector: x })
+    }
+}
 
 /// Improves one root; `None` where the iteration fails or leaves the
 /// neighbourhood.
@@ -41,129 +207,49 @@ pub(crate) fn polish(
     seed: c64,
     start: Option<&[c64]>,
 ) -> Option<Eigenpair> {
-    let hysteresis = Reduced::hysteresis_at(seed);
-    let mut p = seed;
-    let (mut q, mut slope) = aerodynamics.q_and_slope(p);
-    let mut x: Vec<c64> = match start {
-        Some(vector) => vector.to_vec(),
-        None => inverse_iteration(p, reduced.operator(p, &q, hysteresis)).right,
+    let pencil = Pencil::new(reduced, aerodynamics);
+    let seed = Seed {
+        p: seed,
+        vector: start.map(<[c64]>::to_vec),
     };
-    let scale = turned_to_unit(&x);
-    for value in &mut x {
-        *value *= scale;
-    }
-    let anchor = x.clone();
-    let mut last_step = f64::INFINITY;
-    for _ in 0..MAX_STEPS {
-        let operator = reduced.operator(p, &q, hysteresis);
-        let step = newton_step(&operator, &reduced.operator_slope(p, &slope), &x, &anchor);
-        let length = step.1.norm();
-        if !length.is_finite() {
-            return None;
-        }
-        let cut = if length > LONGEST_STEP {
-            LONGEST_STEP / length
-        } else {
-            1.0
-        };
-        x.iter_mut()
-            .zip(&step.0)
-            .for_each(|(value, change)| *value += change * cut);
-        p += step.1 * cut;
-        let has_stalled = length >= 0.5 * last_step && length < ACCEPTABLE;
-        if length < CONVERGED * (1.0 + p.norm()) || has_stalled {
-            return finish(reduced, aerodynamics, p, seed, hysteresis);
-        }
-        if (p - seed).norm() > 3.0 * LONGEST_WAY {
-            return None;
-        }
-        last_step = length;
-        (q, slope) = aerodynamics.q_and_slope(p);
-    }
-    None
+    let root = newton(&pencil, vec![seed]).pop()??;
+    Some(pencil.pair(root.p))
 }
 
-/// Changes of $x$ and $p$.
-fn newton_step(
-    operator: &Mat<c64>,
-    slope: &Mat<c64>,
-    x: &[c64],
-    anchor: &[c64],
-) -> (Vec<c64>, c64) {
-    let order = operator.nrows();
-    let mut bordered = Mat::zeros(order + 1, order + 1);
-    let mut rhs = Mat::zeros(order + 1, 1);
-    for i in 0..order {
-        let size = (0..order)
-            .map(|j| operator[(i, j)].norm())
-            .fold(0.0, f64::max);
-        let scale = 1.0 / size.max(f64::MIN_POSITIVE.sqrt());
-        for j in 0..order {
-            bordered[(i, j)] = operator[(i, j)] * scale;
-            bordered[(i, order)] += slope[(i, j)] * x[j] * scale;
-            rhs[(i, 0)] -= operator[(i, j)] * x[j] * scale;
-        }
-        bordered[(order, i)] = anchor[i].conj();
+impl Pencil<'_> {
+    /// A root with both its vectors.
+    pub(crate) fn pair(&self, p: c64) -> Eigenpair {
+        inverse_iteration(p, self.operator(p, Reduced::hysteresis_at(p)))
     }
-    rhs[(order, 0)] = c64::new(1.0, 0.0) - inner(anchor, x);
-    Lu::new(bordered).solve(rhs.as_mut());
-    ((0..order).map(|i| rhs[(i, 0)]).collect(), rhs[(order, 0)])
+
+    /// Several roots with both their vectors.
+    pub(crate) fn pairs(&self, roots: &[c64]) -> Vec<Eigenpair> {
+        let mut pairs = Vec::with_capacity(roots.len());
+        for hysteresis in [Hysteresis::Included, Hysteresis::LeftOut] {
+            let group: Vec<c64> = roots
+                .iter()
+                .copied()
+                .filter(|p| Reduced::hysteresis_at(*p) == hysteresis)
+                .collect();
+            self.each_operator(&group, hysteresis, |number, operator| {
+                pairs.push(inverse_iteration(group[number], operator));
+            });
+        }
+        sort(&mut pairs);
+        pairs
+    }
 }
 
-fn finish(
-    reduced: &Reduced,
-    aerodynamics: &dyn Aerodynamics,
-    p: c64,
-    seed: c64,
-    hysteresis: Hysteresis,
-) -> Option<Eigenpair> {
-    if (p - seed).norm() > LONGEST_WAY {
-        return None;
-    }
-    let mut p = p;
-    if p.im.abs() < REAL_ROOT {
-        p = c64::new(p.re, 0.0);
-    }
-    if p.im < 0.0 {
-        if hysteresis == Hysteresis::Included {
-            return None;
-        }
-        p = p.conj();
-    }
-    Some(inverse_iteration(
-        p,
-        reduced.operator(p, &aerodynamics.q(p), hysteresis),
-    ))
-}
-
-/// Polishes seeds, drops zero roots and merges the ones that meet; sorted by
-/// $k$, then $g$.
-pub(crate) fn polish_all(
-    reduced: &Reduced,
-    aerodynamics: &dyn Aerodynamics,
-    seeds: &[c64],
-) -> Vec<Eigenpair> {
-    let mut roots: Vec<Eigenpair> = Vec::new();
-    for &seed in seeds {
-        if let Some(root) = polish(reduced, aerodynamics, seed, None)
-            && root.p.norm() >= ZERO_ROOT
-        {
-            add_new(&mut roots, root);
-        }
-    }
-    sort(&mut roots);
-    roots
-}
-
-/// Adds a root unless it is in the list already.
-pub(crate) fn add_new(roots: &mut Vec<Eigenpair>, root: Eigenpair) {
-    let radius = SAME_ROOT * (1.0 + root.p.norm());
-    if roots
-        .iter()
-        .all(|other| (other.p - root.p).norm() >= radius)
-    {
+/// Adds a root unless it is zero or in the list already.
+pub(crate) fn add_new(roots: &mut Vec<Root>, root: Root) {
+    if root.p.norm() >= ZERO_ROOT && roots.iter().all(|other| !is_same(other.p, root.p)) {
         roots.push(root);
     }
+}
+
+/// Whether two values are one root.
+pub(crate) fn is_same(first: c64, second: c64) -> bool {
+    (first - second).norm() < SAME_ROOT * (1.0 + second.norm())
 }
 
 /// By $k$, then by $g$.

@@ -8,7 +8,7 @@
 
 use faer::{Mat, c64};
 
-use crate::aerodynamics::Aerodynamics;
+use crate::aerodynamics::{Aerodynamics, Expansion};
 use crate::gaf::GafTable;
 use crate::linalg::NoConvergence;
 use crate::vector_fit;
@@ -97,8 +97,33 @@ impl Aerodynamics for RationalFit {
         real_parts.reduce(f64::max)
     }
 
+    fn expansion(&self) -> Option<&dyn Expansion> {
+        Some(self)
+    }
+
     fn as_rational(&self) -> Option<&RationalFit> {
         Some(self)
+    }
+}
+
+/// $Q(0)$ and the coefficients.
+impl Expansion for RationalFit {
+    fn matrices(&self) -> Vec<&Mat<f64>> {
+        std::iter::once(&self.at_rest)
+            .chain(&self.coefficients)
+            .collect()
+    }
+
+    fn weights(&self, p: c64) -> Vec<c64> {
+        let mut weights = functions(p, &self.poles);
+        weights.insert(0, c64::new(1.0, 0.0));
+        weights
+    }
+
+    fn slopes(&self, p: c64) -> Vec<c64> {
+        let mut weights = slopes(p, &self.poles);
+        weights.insert(0, c64::new(0.0, 0.0));
+        weights
     }
 }
 
@@ -110,6 +135,7 @@ pub(crate) fn functions(p: c64, poles: &[Pole]) -> Vec<c64> {
     values
 }
 
+/// Derivatives of the [`functions`].
 fn slopes(p: c64, poles: &[Pole]) -> Vec<c64> {
     let mut values = vec![c64::new(1.0, 0.0), p * 2.0];
     append(&mut values, poles, |a| -a / ((p - a) * (p - a)));

@@ -2,9 +2,12 @@
 
 use std::collections::HashMap;
 
-use crate::crossing::Found;
+use crate::crossing::{Found, Resolver};
 use crate::eigenpair::Eigenpair;
-use crate::results::{Branch, Crossing, Divergence, Kind, MethodResult, UnstableStart};
+use crate::events::{Event, Turn};
+use crate::results::{
+    Branch, Crossing, Divergence, Hump, Kind, MethodResult, TurnOfPair, UnstableStart,
+};
 use crate::structure::{OperatingPoint, Reduced};
 use crate::sweep::{Sweep, reduced_at};
 use crate::track::Track;
@@ -49,20 +52,33 @@ impl<'a> Reporter<'a> {
         }
     }
 
-    pub(crate) fn report(&self, found: &[Found]) -> MethodResult {
+    pub(crate) fn report(
+        &self,
+        found: &[Found],
+        events: &[Event],
+        resolver: &dyn Resolver,
+    ) -> MethodResult {
         let mut result = MethodResult::default();
         for number in 0..self.tracks.len() {
             result.branches.push(self.branch(number));
-            result
-                .unstable_at_start
-                .extend(self.unstable_start(number, found));
+            if !self.continues_growth(number, events) {
+                result
+                    .unstable_at_start
+                    .extend(self.unstable_start(number, found));
+            }
         }
+        result.turns = events.iter().map(|event| self.turn(event)).collect();
+        result.humps = self.humps(found);
         for crossing in found {
             let entry = self.crossing(crossing);
             if !crossing.is_rising {
                 result.restabilised.push(entry);
             } else if crossing.pair.p.im > 0.0 {
-                result.flutter.push(entry);
+                let derivatives = resolver.sensitivities(crossing.parameter, &crossing.pair);
+                result.flutter.push(Crossing {
+                    sensitivities: (!derivatives.is_empty()).then_some(derivatives),
+                    ..entry
+                });
             } else {
                 result.divergence.push(Divergence {
                     speed: entry.speed,
@@ -117,8 +133,59 @@ impl<'a> Reporter<'a> {
             branch: self.names[found.track].clone(),
             kind: kind_of(&shares, &self.rigid),
             altitude: point.altitude,
+            sensitivities: None,
             shape: found.pair.right.clone(),
         }
+    }
+
+    /// Whether the branch begins in a pair or in real roots that grow already:
+    /// the same instability, told once.
+    fn continues_growth(&self, number: usize, events: &[Event]) -> bool {
+        let grows = |track: &usize| {
+            let last = self.tracks[*track].roots.last();
+            last.is_some_and(|root| root.p.re > 0.0)
+        };
+        events.iter().any(|event| match event.turn {
+            Turn::Split => event.real.contains(&number) && grows(&event.pair),
+            Turn::Join => event.pair == number && event.real.iter().any(grows),
+        })
+    }
+
+    fn turn(&self, event: &Event) -> TurnOfPair {
+        let name = |track: &usize| self.names[*track].clone();
+        TurnOfPair {
+            kind: match event.turn {
+                Turn::Split => "split",
+                Turn::Join => "join",
+            },
+            pair: name(&event.pair),
+            real: event.real.iter().map(name).collect(),
+            between: [event.after, event.after + 1].map(|speed| self.points[speed].airspeed),
+        }
+    }
+
+    /// Ways into growth that the same branch leaves again.
+    fn humps(&self, found: &[Found]) -> Vec<Hump> {
+        let mut ordered: Vec<&Found> = found.iter().collect();
+        ordered.sort_by(|a, b| {
+            let by_track = a.track.cmp(&b.track);
+            by_track.then(a.parameter.total_cmp(&b.parameter))
+        });
+        let is_hump = |pair: &&[&Found]| {
+            pair[0].track == pair[1].track && pair[0].is_rising && !pair[1].is_rising
+        };
+        let speed = |found: &Found| self.sweep.schedule.at(found.parameter).airspeed;
+        let mut humps: Vec<Hump> = ordered
+            .windows(2)
+            .filter(is_hump)
+            .map(|pair| Hump {
+                branch: self.names[pair[0].track].clone(),
+                from: speed(pair[0]),
+                to: speed(pair[1]),
+            })
+            .collect();
+        humps.sort_by(|a, b| a.from.total_cmp(&b.from));
+        humps
     }
 
     fn unstable_start(&self, number: usize, found: &[Found]) -> Option<UnstableStart> {

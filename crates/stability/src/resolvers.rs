@@ -1,10 +1,15 @@
 //! The root of a branch between two speeds, by each method.
 
+use faer::c64;
+
 use crate::aerodynamics::Aerodynamics;
 use crate::crossing::Resolver;
 use crate::eigenpair::Eigenpair;
+use crate::flutter_point::{Local, Moving, change_along, flutter_point};
+use crate::pencil::Pencil;
 use crate::pk::PkProblem;
-use crate::spline::AxisSpline;
+use crate::sensitivity::{Parameter, Sensitivity, quotient, root_sensitivity};
+use crate::spline::AxisForces;
 use crate::structure::Reduced;
 use crate::sweep::{Sweep, reduced_at};
 use crate::track::{SMALL_RATE, alikeness};
@@ -29,7 +34,7 @@ impl Resolver for P2Resolver<'_> {
 /// Roots of the p-k problem.
 pub(crate) struct PkResolver<'a> {
     pub(crate) sweep: &'a Sweep<'a>,
-    pub(crate) spline: &'a AxisSpline,
+    pub(crate) forces: &'a dyn AxisForces,
 }
 
 impl Resolver for PkResolver<'_> {
@@ -37,7 +42,7 @@ impl Resolver for PkResolver<'_> {
         let reduced = reduced_at(self.sweep, parameter);
         let problem = PkProblem {
             reduced: &reduced,
-            spline: self.spline,
+            forces: self.forces,
             form: self.sweep.pk_form,
         };
         nearest(&reduced, vec![problem.near(guess.p)?], guess)
@@ -54,6 +59,75 @@ impl Resolver for PolishedResolver<'_> {
     fn near(&self, parameter: f64, guess: &Eigenpair) -> Option<Eigenpair> {
         let reduced = reduced_at(self.sweep, parameter);
         crate::polish::polish(&reduced, self.smooth, guess.p, Some(&guess.right))
+    }
+
+    /// By Newton's iteration; a root of another shape is another root.
+    fn crossing(
+        &self,
+        parameter: f64,
+        guess: &Eigenpair,
+        bounds: [f64; 2],
+    ) -> Option<(f64, Eigenpair)> {
+        let point = flutter_point(self, guess, parameter, bounds)?;
+        let reduced = reduced_at(self.sweep, point.parameter);
+        let p = c64::new(0.0, point.k);
+        let pair = Pencil::new(&reduced, self.smooth).pair(p);
+        let likeness = alikeness(&pair.right, &guess.right, &reduced.mass);
+        (likeness > LEAST_LIKENESS).then_some((point.parameter, pair))
+    }
+
+    fn sensitivities(&self, parameter: f64, pair: &Eigenpair) -> Vec<Sensitivity> {
+        let local = self.local(parameter, pair.p);
+        let along = quotient(&local.slope, pair, &local.change);
+        let reduced = reduced_at(self.sweep, parameter);
+        let [airspeed, airspeed_change] = airspeed_and_change(self.sweep, parameter);
+        let semichord = self.sweep.table.semichord();
+        let each = |property: &Parameter| {
+            let p = root_sensitivity(&reduced, &local.slope, pair, property);
+            let place = -p.re / along.re;
+            let k = (p + along * place).im;
+            let speed = airspeed_change * place;
+            let omega = (k * airspeed + pair.p.im * speed) / semichord;
+            Sensitivity {
+                parameter: property.name.clone(),
+                unit: property.unit,
+                speed,
+                frequency_hz: omega / std::f64::consts::TAU,
+            }
+        };
+        self.sweep.parameters.iter().map(each).collect()
+    }
+}
+
+/// Airspeed at a place of the sweep and its change per step.
+fn airspeed_and_change(sweep: &Sweep<'_>, parameter: f64) -> [f64; 2] {
+    const HALF_STEP: f64 = 1e-4;
+    let last = (sweep.schedule.count() - 1) as f64;
+    let airspeed = |parameter: f64| sweep.schedule.at(parameter).airspeed;
+    let low = (parameter - HALF_STEP).max(0.0);
+    let high = (parameter + HALF_STEP).min(last);
+    [
+        airspeed(parameter),
+        (airspeed(high) - airspeed(low)) / (high - low),
+    ]
+}
+
+/// Least likeness of a crossing to the root at the nearer speed.
+const LEAST_LIKENESS: f64 = 0.5;
+
+impl Moving for PolishedResolver<'_> {
+    fn local(&self, parameter: f64, p: c64) -> Local {
+        let (q, q_slope) = self.smooth.q_and_slope(p);
+        let operator_at = |parameter: f64| {
+            let reduced = reduced_at(self.sweep, parameter);
+            reduced.operator(p, &q, Reduced::hysteresis_at(p))
+        };
+        let last = (self.sweep.schedule.count() - 1) as f64;
+        Local {
+            operator: operator_at(parameter),
+            slope: reduced_at(self.sweep, parameter).operator_slope(p, &q_slope),
+            change: change_along(operator_at, parameter, last),
+        }
     }
 }
 

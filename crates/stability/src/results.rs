@@ -6,6 +6,9 @@ use serde::Serialize;
 
 use faer::c64;
 
+use crate::count::Tally;
+use crate::sensitivity::Sensitivity;
+
 /// Version of the layout.
 pub const SCHEMA: &str = "fladder.stability/1";
 
@@ -49,11 +52,65 @@ pub struct MethodResult {
     pub divergence: Vec<Divergence>,
     /// Ways back into $g < 0$, lowest speed first.
     pub restabilised: Vec<Crossing>,
-    /// Roots with $g > 0$ where their branch begins, without a crossing.
+    /// Roots with $g > 0$ where their branch begins, without a crossing; a
+    /// growing pair that turns into real roots is not told again.
     pub unstable_at_start: Vec<UnstableStart>,
+    /// Branches that grow over a range of speeds inside the sweep.
+    pub humps: Vec<Hump>,
+    /// Pairs that turn into two real roots, and back.
+    pub turns: Vec<TurnOfPair>,
     /// Whether the count of roots was met at each speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complete: Option<Vec<bool>>,
+    /// Roots counted and found at each speed; none where a curve of the count
+    /// runs through a root.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub count: Option<Vec<Option<Count>>>,
+}
+
+/// A branch that grows between two speeds and decays on both sides.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Hump {
+    /// Name of the branch.
+    pub branch: String,
+    /// Speed of its crossing into growth in m/s.
+    pub from: f64,
+    /// Speed of the way back.
+    pub to: f64,
+}
+
+/// A complex pair that becomes two real roots (`split`) or the reverse
+/// (`join`): one motion with three branches.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TurnOfPair {
+    /// `split` or `join`.
+    pub kind: &'static str,
+    /// Branch of the pair.
+    pub pair: String,
+    /// Branches of the real roots; one where the other lies outside the
+    /// region.
+    pub real: Vec<String>,
+    /// The speeds between which it happens, m/s.
+    pub between: [f64; 2],
+}
+
+/// Roots inside the curves of the argument principle at one speed: the zero
+/// roots and both of a pair near the real axis count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Count {
+    /// By the change of phase along the curves.
+    pub counted: i64,
+    /// In the list.
+    pub found: i64,
+}
+
+impl From<Tally> for Count {
+    fn from(tally: Tally) -> Self {
+        Self {
+            counted: tally.listed + tally.missing(),
+            found: tally.listed,
+        }
+    }
 }
 
 /// One root over consecutive speeds.
@@ -124,6 +181,10 @@ pub struct Crossing {
     pub branch: String,
     /// What moves.
     pub kind: Kind,
+    /// Derivatives of speed and frequency with respect to properties of the
+    /// structure, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensitivities: Option<Vec<Sensitivity>>,
     /// Altitude in m, in sweeps that have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub altitude: Option<f64>,

@@ -8,8 +8,44 @@
 
 use faer::{Mat, c64};
 
+use crate::aerodynamics::Aerodynamics;
 use crate::gaf::GafTable;
 use crate::linalg::{NoConvergence, least_squares};
+
+/// $Q(\mathrm ik)$ and its slope in $k$, as the p-k method wants them.
+pub(crate) trait AxisForces: Sync {
+    /// $Q(\mathrm ik)$.
+    fn q(&self, k: f64) -> Mat<c64>;
+    /// $\mathrm dQ(\mathrm ik)/\mathrm dk$.
+    fn slope(&self, k: f64) -> Mat<c64>;
+}
+
+impl AxisForces for AxisSpline {
+    fn q(&self, k: f64) -> Mat<c64> {
+        self.q(k)
+    }
+
+    fn slope(&self, k: f64) -> Mat<c64> {
+        self.slope(k)
+    }
+}
+
+/// A model evaluated on the axis instead of interpolated samples.
+pub(crate) struct OnAxis<'a>(pub(crate) &'a dyn Aerodynamics);
+
+impl AxisForces for OnAxis<'_> {
+    fn q(&self, k: f64) -> Mat<c64> {
+        self.0.q(c64::new(0.0, k))
+    }
+
+    /// $\mathrm dQ/\mathrm dk = \mathrm i\,\mathrm dQ/\mathrm dp$.
+    fn slope(&self, k: f64) -> Mat<c64> {
+        let (_, slope) = self.0.q_and_slope(c64::new(0.0, k));
+        Mat::from_fn(slope.nrows(), slope.ncols(), |i, j| {
+            slope[(i, j)] * c64::new(0.0, 1.0)
+        })
+    }
+}
 
 /// A cubic spline in $k$ with matrix values.
 #[derive(Clone, Debug)]

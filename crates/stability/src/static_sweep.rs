@@ -3,7 +3,7 @@
 use crate::divergence::static_divergence;
 use crate::report::{kind_of, leading_mode};
 use crate::results::Divergence;
-use crate::spline::AxisSpline;
+use crate::spline::AxisForces;
 use crate::structure::OperatingPoint;
 use crate::sweep::{Sweep, SweepError, q_at_rest, reduced_at};
 
@@ -14,11 +14,11 @@ const HALVINGS: usize = 50;
 pub(crate) fn divergences(
     sweep: &Sweep<'_>,
     points: &[OperatingPoint],
-    spline: &AxisSpline,
+    forces: &dyn AxisForces,
 ) -> Result<Vec<Divergence>, SweepError> {
     let reduced = reduced_at(sweep, 0.0);
     let rigid = sweep.structure.rigid_modes();
-    let found = static_divergence(&reduced.stiffness, &q_at_rest(spline), &rigid).map_err(
+    let found = static_divergence(&reduced.stiffness, &q_at_rest(forces), &rigid).map_err(
         |source| SweepError::Numerical {
             airspeed: points[0].airspeed,
             source,

@@ -223,6 +223,30 @@ impl Reduced {
         Mat::from_fn(q.nrows(), q.ncols(), |i, j| loads[(i, j)] * self.pressure)
     }
 
+    /// $q_\infty R$ for a real part $R$ of $Q$.
+    pub(crate) fn real_loads(&self, part: &Mat<f64>) -> Mat<f64> {
+        let order = self.order();
+        if self.flight_path.is_none() {
+            return Mat::from_fn(order, order, |i, j| part[(i, j)] * self.pressure);
+        }
+        let wide = Mat::from_fn(order, order, |i, j| c64::new(part[(i, j)], 0.0));
+        let loads = self.loads(&wide);
+        Mat::from_fn(order, order, |i, j| loads[(i, j)].re)
+    }
+
+    /// Whether hysteretic damping is in the problem.
+    pub(crate) fn is_hysteretic(&self) -> bool {
+        self.hysteretic.is_some()
+    }
+
+    /// Adds $\mathrm ig_{s,i}K_{ii}$.
+    pub(crate) fn add_hysteresis(&self, operator: &mut Mat<c64>) {
+        let factors = self.hysteretic.iter().flatten().enumerate();
+        for (mode, factor) in factors {
+            operator[(mode, mode)].im += factor * self.stiffness[(mode, mode)];
+        }
+    }
+
     /// $K$ with or without hysteretic damping.
     pub(crate) fn stiffness(&self, hysteresis: Hysteresis) -> Mat<c64> {
         let order = self.order();

@@ -7,17 +7,24 @@ use faer::{Mat, c64};
 use rayon::prelude::*;
 
 use crate::aerodynamics::Aerodynamics;
+use crate::complete;
+use crate::continuation::Continuation;
+use crate::count::{Census, Claim};
 use crate::crossing::{Found, Resolver, before_the_start, locate, sign_changes};
 use crate::eigenpair::Eigenpair;
+use crate::events::events;
 use crate::gaf::GafTable;
+use crate::hump::hidden_crossings;
 use crate::linalg::NoConvergence;
 use crate::p2::PiecewiseQuadratic;
+use crate::pencil::Pencil;
 use crate::pk::PkForm;
-use crate::refined::refined_roots;
+use crate::refined::RefinedRoots;
 use crate::report::Reporter;
 use crate::resolvers::{P2Resolver, PkResolver, PolishedResolver};
-use crate::results::{MethodResult, Methods, SCHEMA, SweepResult};
-use crate::spline::AxisSpline;
+use crate::results::{Count, MethodResult, Methods, SCHEMA, SweepResult};
+use crate::sensitivity::{Parameter, root_sensitivity};
+use crate::spline::{AxisForces, AxisSpline, OnAxis};
 use crate::structure::{OperatingPoint, Reduced, Schedule, Structure};
 use crate::track::{Station, Track, follow};
 
@@ -33,6 +40,18 @@ pub enum Method {
     Both,
 }
 
+/// How the refined roots are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Search {
+    /// Followed from speed to speed, counted at each, searched anew where the
+    /// count is not met.
+    #[default]
+    Continuation,
+    /// From the quadratic problems of every cell at every speed: twenty times
+    /// the cost, an oracle for the other.
+    EverySpeed,
+}
+
 /// A sweep to be made.
 pub struct Sweep<'a> {
     /// Structure.
@@ -46,10 +65,18 @@ pub struct Sweep<'a> {
     /// Smooth $Q(p)$ on which roots are refined; without it there is no
     /// outcome `polished`.
     pub smooth: Option<&'a dyn Aerodynamics>,
+    /// How the refined roots are found.
+    pub search: Search,
     /// Which methods run.
     pub method: Method,
     /// Form of the p-k problem.
     pub pk_form: PkForm,
+    /// $Q(\mathrm ik)$ of the p-k problem; without it the samples are
+    /// interpolated.
+    pub pk_forces: Option<&'a dyn Aerodynamics>,
+    /// Properties with respect to which crossings of the refined roots are
+    /// differentiated.
+    pub parameters: &'a [Parameter],
 }
 
 /// What a caller wants to know while a sweep runs.
@@ -108,6 +135,29 @@ pub enum SweepError {
     Cancelled,
 }
 
+impl<'a> Sweep<'a> {
+    /// All methods on samples alone: no smooth $Q(p)$, p-k by interpolation.
+    pub fn new(
+        structure: &'a dyn Structure,
+        schedule: &'a dyn Schedule,
+        table: &'a GafTable,
+        fit: &'a PiecewiseQuadratic,
+    ) -> Self {
+        Self {
+            structure,
+            schedule,
+            table,
+            fit,
+            smooth: None,
+            search: Search::default(),
+            method: Method::default(),
+            pk_form: PkForm::default(),
+            pk_forces: None,
+            parameters: &[],
+        }
+    }
+}
+
 impl Sweep<'_> {
     /// Number of calls of [`Progress::advance`] in a whole run.
     pub fn steps(&self) -> usize {
@@ -156,6 +206,37 @@ impl Sweep<'_> {
         })
     }
 
+    /// Counts the roots at a place of the sweep and holds a list against the
+    /// number: the roots of the list inside the curves are `found`, a missing
+    /// one raises `counted` above it, a false one lowers it.
+    ///
+    /// The number comes from values of $\det T$ along the curves alone; the
+    /// list only makes its phase smooth. `None` without a smooth $Q(p)$ and
+    /// where a curve runs through a root.
+    pub fn count(&self, parameter: f64, roots: &[c64], zeros: usize) -> Option<Count> {
+        let smooth = self.smooth?;
+        let reduced = reduced_at(self, parameter);
+        let census = Census {
+            pencil: &Pencil::new(&reduced, smooth),
+            claim: &Claim::new(smooth, self.fit.region()),
+            roots,
+            zeros,
+        };
+        census.tally().map(Count::from)
+    }
+
+    /// $\partial p/\partial\theta$ of a root at a place of the sweep and fixed
+    /// speed, with respect to each of the sweep's parameters. The root is
+    /// refined first; `None` without a smooth $Q(p)$ or a root nearby.
+    pub fn root_sensitivities(&self, parameter: f64, root: c64) -> Option<Vec<c64>> {
+        let smooth = self.smooth?;
+        let reduced = reduced_at(self, parameter);
+        let pair = crate::polish::polish(&reduced, smooth, root, None)?;
+        let slope = reduced.operator_slope(pair.p, &smooth.q_and_slope(pair.p).1);
+        let each = |parameter| root_sensitivity(&reduced, &slope, &pair, parameter);
+        Some(self.parameters.iter().map(each).collect())
+    }
+
     fn checked_points(&self) -> Result<Vec<OperatingPoint>, SweepError> {
         let count = self.schedule.count();
         if count == 0 {
@@ -190,6 +271,7 @@ struct Solved {
     roots: Vec<Vec<Eigenpair>>,
     zeros: Vec<usize>,
     complete: Option<Vec<bool>>,
+    count: Option<Vec<Option<Count>>>,
 }
 
 struct Run<'a> {
@@ -232,6 +314,7 @@ impl Run<'_> {
                 roots,
                 zeros,
                 complete: None,
+                count: None,
             },
             &resolver,
         ))
@@ -239,9 +322,12 @@ impl Run<'_> {
 
     fn polished(&self, smooth: &dyn Aerodynamics) -> Result<MethodResult, SweepError> {
         let sweep = self.sweep;
-        let solved =
-            self.at_every_speed(|reduced| refined_roots(reduced, sweep.fit, smooth))?;
+        let solved = match sweep.search {
+            Search::Continuation => self.continued(smooth)?,
+            Search::EverySpeed => self.from_all_cells(smooth)?,
+        };
         let complete = solved.iter().map(|speed| speed.is_complete).collect();
+        let count = solved.iter().map(|speed| speed.count).collect();
         let (roots, zeros) = solved.into_iter().map(|s| (s.roots, s.zeros)).unzip();
         let resolver = PolishedResolver { sweep, smooth };
         Ok(self.finish(
@@ -249,36 +335,77 @@ impl Run<'_> {
                 roots,
                 zeros,
                 complete: Some(complete),
+                count: Some(count),
             },
             &resolver,
         ))
     }
 
+    fn continued(&self, smooth: &dyn Aerodynamics) -> Result<Vec<RefinedRoots>, SweepError> {
+        let tick = || {
+            self.progress.advance();
+            !self.progress.is_cancelled()
+        };
+        let continuation = Continuation {
+            fit: self.sweep.fit,
+            smooth,
+            reduced: self.reduced,
+        };
+        continuation
+            .run(&tick)
+            .map_err(|(number, source)| SweepError::Numerical {
+                airspeed: self.points[number].airspeed,
+                source,
+            })?
+            .ok_or(SweepError::Cancelled)
+    }
+
+    fn from_all_cells(
+        &self,
+        smooth: &dyn Aerodynamics,
+    ) -> Result<Vec<RefinedRoots>, SweepError> {
+        let fit = self.sweep.fit;
+        let claim = Claim::new(smooth, fit.region());
+        self.at_every_speed(|reduced| {
+            let pencil = Pencil::new(reduced, smooth);
+            let search = complete::Search {
+                pencil: &pencil,
+                fit,
+                claim: &claim,
+            };
+            let (list, found) = search.from_all_cells()?;
+            Ok(search.finish(&list, &found))
+        })
+    }
+
     fn pk(&self) -> Result<MethodResult, SweepError> {
         let sweep = self.sweep;
         let spline = AxisSpline::new(sweep.table).map_err(SweepError::Spline)?;
+        let given = sweep.pk_forces.map(OnAxis);
+        let forces: &dyn AxisForces = match &given {
+            Some(given) => given,
+            None => &spline,
+        };
         let solved = self.at_every_speed(|reduced| {
             crate::pk::PkProblem {
                 reduced,
-                spline: &spline,
+                forces,
                 form: sweep.pk_form,
             }
             .roots(sweep.table.k())
         })?;
         let (roots, zeros) = solved.into_iter().map(|s| (s.roots, s.zeros)).unzip();
-        let resolver = PkResolver {
-            sweep,
-            spline: &spline,
-        };
+        let resolver = PkResolver { sweep, forces };
         let mut result = self.finish(
             &Solved {
                 roots,
                 zeros,
                 complete: None,
+                count: None,
             },
             &resolver,
         );
-        result.divergence = crate::static_sweep::divergences(sweep, self.points, &spline)?;
+        result.divergence = crate::static_sweep::divergences(sweep, self.points, forces)?;
         Ok(result)
     }
 
@@ -295,10 +422,12 @@ impl Run<'_> {
             .collect();
         let tracks = follow(&stations);
         let found = crossings(&tracks, resolver);
+        let events = events(&tracks, &stations);
         let reporter = Reporter::new(self.sweep, self.points, self.reduced, &tracks);
-        let mut result = reporter.report(&found);
+        let mut result = reporter.report(&found, &events, resolver);
         result.zero_roots.clone_from(&solved.zeros);
         result.complete.clone_from(&solved.complete);
+        result.count.clone_from(&solved.count);
         result
     }
 }
@@ -310,6 +439,7 @@ fn crossings(tracks: &[Track], resolver: &dyn Resolver) -> Vec<Found> {
         .flat_map_iter(|(number, track)| {
             let mut brackets = sign_changes(number, track);
             brackets.extend(before_the_start(number, track, resolver));
+            brackets.extend(hidden_crossings(number, track, resolver));
             brackets
                 .into_iter()
                 .filter_map(|bracket| locate(&bracket, resolver))
@@ -323,8 +453,8 @@ pub(crate) fn reduced_at(sweep: &Sweep<'_>, parameter: f64) -> Reduced {
     Reduced::new(sweep.structure, &point, sweep.table.semichord())
 }
 
-/// $Q(0)$ by interpolation, real.
-pub(crate) fn q_at_rest(spline: &AxisSpline) -> Mat<c64> {
-    let q = spline.q(0.0);
+/// $Q(0)$, real.
+pub(crate) fn q_at_rest(forces: &dyn AxisForces) -> Mat<c64> {
+    let q = forces.q(0.0);
     Mat::from_fn(q.nrows(), q.ncols(), |i, j| c64::new(q[(i, j)].re, 0.0))
 }

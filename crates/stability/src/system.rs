@@ -1,9 +1,10 @@
 //! Structural matrices put together from modes, mass properties and flight.
 
-use faer::Mat;
+use faer::{Mat, c64};
 
 use crate::flight::{Flight, TrimAerodynamics};
 use crate::rigid::{RigidBody, RigidModes};
+use crate::sensitivity::Parameter;
 use crate::structure::{FlightPath, OperatingPoint, StructuralMatrices, Structure};
 
 /// Given mass matrices may differ from the rigid body by this fraction.
@@ -92,6 +93,8 @@ pub struct System {
     damping: Mat<f64>,
     stiffness: Mat<f64>,
     hysteretic: Option<Vec<f64>>,
+    /// Coefficients of the viscous model, which are in `damping`.
+    viscous: Vec<f64>,
     rigid_modes: RigidModes,
     body: Option<RigidBody>,
     flight: Option<FlightSetting>,
@@ -133,6 +136,7 @@ impl System {
         }
         let rigid_modes = RigidModes::among(&modes);
         Ok(Self {
+            viscous: vec![0.0; modes.len()],
             modes,
             mass,
             damping,
@@ -196,6 +200,7 @@ impl System {
         }
         match damping {
             DampingModel::Viscous(values) => {
+                self.viscous.clone_from(&values);
                 for (mode, value) in values.into_iter().enumerate() {
                     let product = self.stiffness[(mode, mode)] * self.mass[(mode, mode)];
                     self.damping[(mode, mode)] += value * product.max(0.0).sqrt();
@@ -301,6 +306,48 @@ impl System {
     /// Number of modes.
     pub fn order(&self) -> usize {
         self.modes.len()
+    }
+
+    /// Frequency (Hz, at constant mass), structural damping and generalised
+    /// mass (at constant stiffness) of every mode that has a stiffness and is
+    /// not rigid, as properties for sensitivities.
+    pub fn modal_parameters(&self) -> Vec<Parameter> {
+        let rigid = self.rigid_modes.numbers();
+        let is_elastic =
+            |mode: &usize| !rigid.contains(mode) && self.stiffness[(*mode, *mode)] > 0.0;
+        (0..self.order())
+            .filter(is_elastic)
+            .flat_map(|mode| self.parameters_of(mode))
+            .collect()
+    }
+
+    fn parameters_of(&self, mode: usize) -> [Parameter; 3] {
+        let (mass, stiffness) = (self.mass[(mode, mode)], self.stiffness[(mode, mode)]);
+        let rate = (stiffness / mass).sqrt();
+        let named = |what: &str, unit| {
+            Parameter::new(
+                format!("{what} of {}", self.modes[mode]),
+                unit,
+                self.order(),
+            )
+        };
+        let factor = self.hysteretic.as_ref().map_or(0.0, |list| list[mode]);
+        let place = (mode, mode);
+        let mut frequency = named("frequency", "Hz");
+        let per_hertz = std::f64::consts::TAU;
+        frequency.stiffness[place] = c64::new(1.0, factor) * (2.0 * rate * mass * per_hertz);
+        frequency.damping[place] = self.viscous[mode] * mass * per_hertz;
+        let mut damping = named("damping", "1");
+        if self.hysteretic.is_some() {
+            damping.stiffness[place] = c64::new(0.0, stiffness);
+        } else {
+            damping.damping[place] = rate * mass;
+        }
+        let mut inertia = named("mass", "1");
+        inertia.mass[place] = 1.0;
+        // C_ii = g sqrt(K M).
+        inertia.damping[place] = 0.5 * self.viscous[mode] * rate;
+        [frequency, damping, inertia]
     }
 }
 

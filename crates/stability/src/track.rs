@@ -135,10 +135,28 @@ fn join(heads: &[&Eigenpair], rate: f64, station: &Station<'_>) -> Vec<Option<us
     partners
 }
 
+/// Cost of joining roots of two speeds, be they real or complex.
+pub(crate) fn cost_of_kinds(
+    first: &Eigenpair,
+    at_first: &Station<'_>,
+    second: &Eigenpair,
+    at_second: &Station<'_>,
+) -> f64 {
+    cost(
+        &Weighed::new(first, at_first.rate, at_second.mass),
+        &Weighed::new(second, at_second.rate, at_second.mass),
+    )
+}
+
 fn pair_cost(before: &Weighed<'_>, after: &Weighed<'_>) -> f64 {
-    if (before.root.p.im == 0.0) != (after.root.p.im == 0.0) {
-        return FORBIDDEN;
+    if (before.root.p.im == 0.0) == (after.root.p.im == 0.0) {
+        cost(before, after)
+    } else {
+        FORBIDDEN
     }
+}
+
+fn cost(before: &Weighed<'_>, after: &Weighed<'_>) -> f64 {
     let distance = (after.rate - before.rate).norm();
     let scale = f64::midpoint(before.rate.norm(), after.rate.norm()) + SMALL_RATE;
     let likeness =

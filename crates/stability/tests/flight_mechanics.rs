@@ -12,8 +12,8 @@ use common::{data_path, matrix, number, read_json, roots, speeds};
 use faer::{Mat, c64};
 use fladder_stability::{
     DEFAULT_DAMPING_LIMIT, Frame, GafPoint, GafTable, Method, OperatingPoint,
-    PiecewiseQuadratic, PkForm, RIGID_NAMES, RigidBody, StructuralMatrices, Structure, Sweep,
-    System, to_body_frame,
+    PiecewiseQuadratic, RIGID_NAMES, RigidBody, StructuralMatrices, Structure, Sweep, System,
+    to_body_frame,
 };
 use serde_json::Value;
 
@@ -101,13 +101,8 @@ fn jumbo_roots_agree_with_the_reference() {
         };
         let schedule = speeds([airspeed], 1.0);
         let result = Sweep {
-            structure: &structure,
-            schedule: &schedule,
-            table: &table,
-            fit: &fit,
-            smooth: None,
             method: Method::P2,
-            pk_form: PkForm::Complex,
+            ..Sweep::new(&structure, &schedule, &table, &fit)
         }
         .run(&())
         .unwrap()
@@ -222,13 +217,8 @@ fn free_ellipsoid_has_the_exact_roots() {
         .with_rigid_body(body);
         let schedule = speeds([1.0], 1.0);
         let result = Sweep {
-            structure: &system,
-            schedule: &schedule,
-            table: &table,
-            fit: &fit,
-            smooth: None,
             method: Method::P2,
-            pk_form: PkForm::Complex,
+            ..Sweep::new(&system, &schedule, &table, &fit)
         }
         .run(&())
         .unwrap()

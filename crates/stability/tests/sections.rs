@@ -17,17 +17,9 @@ use fladder_stability::{
 fn sweep(section: &Section, from: f64, to: f64, count: usize) -> SweepResult {
     let fit = PiecewiseQuadratic::centred(&section.table, DEFAULT_DAMPING_LIMIT).unwrap();
     let schedule = speeds(range(from, to, count), section.density);
-    Sweep {
-        structure: &section.system,
-        schedule: &schedule,
-        table: &section.table,
-        fit: &fit,
-        smooth: None,
-        method: fladder_stability::Method::Both,
-        pk_form: PkForm::Complex,
-    }
-    .run(&())
-    .unwrap()
+    Sweep::new(&section.system, &schedule, &section.table, &fit)
+        .run(&())
+        .unwrap()
 }
 
 fn check_flutter(name: &str, result: &MethodResult, section: &Section, tolerance: f64) {
@@ -142,13 +134,9 @@ fn rational_fit_refines_the_sections() {
         let values = truth.iter().map(|t| number(&t["U"]));
         let schedule = speeds(values, section.density);
         let result = Sweep {
-            structure: &section.system,
-            schedule: &schedule,
-            table: &section.table,
-            fit: &fit,
             smooth: Some(&smooth),
             method: fladder_stability::Method::P2,
-            pk_form: PkForm::Complex,
+            ..Sweep::new(&section.system, &schedule, &section.table, &fit)
         }
         .run(&())
         .unwrap()
@@ -209,13 +197,9 @@ fn few_samples_are_enough_to_run() {
         assert_eq!(fit.notes().is_empty(), start == 0, "{:?}", fit.notes());
         let schedule = speeds(range(1.5, 2.5, 5), full.density);
         let result = Sweep {
-            structure: &full.system,
-            schedule: &schedule,
-            table: &table,
-            fit: &fit,
             smooth: Some(&smooth),
-            method: fladder_stability::Method::Both,
             pk_form: PkForm::RealMatrices,
+            ..Sweep::new(&full.system, &schedule, &table, &fit)
         }
         .run(&())
         .unwrap();

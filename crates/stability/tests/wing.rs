@@ -14,8 +14,8 @@ use common::{Wing, number, range, roots, speeds};
 use faer::{Mat, c64};
 use fladder_stability::{
     Aerodynamics, DEFAULT_DAMPING_LIMIT, DampingModel, Flight, FromFunction, GafPoint,
-    GafTable, Method, MethodResult, OperatingPoint, PiecewiseQuadratic, PkForm, RationalFit,
-    RigidBody, Structure, Sweep, SweepResult, System, Thrust,
+    GafTable, Method, MethodResult, OperatingPoint, PiecewiseQuadratic, RationalFit, RigidBody,
+    Structure, Sweep, SweepResult, System, Thrust,
 };
 
 fn sweep(
@@ -29,13 +29,9 @@ fn sweep(
     assert_eq!(fit.report().rank, fit.report().unknowns);
     let schedule = speeds(values, wing.density());
     Sweep {
-        structure: wing,
-        schedule: &schedule,
-        table: &table,
-        fit: &fit,
         smooth,
         method,
-        pk_form: PkForm::Complex,
+        ..Sweep::new(wing, &schedule, &table, &fit)
     }
     .run(&())
     .unwrap()
@@ -375,13 +371,8 @@ fn samples_off_the_axis_improve_damped_roots() {
     let run = |fit: &PiecewiseQuadratic| {
         println!("{:?}", fit.report());
         let sweep = Sweep {
-            structure: &wing,
-            schedule: &schedule,
-            table: &table,
-            fit,
-            smooth: None,
             method: Method::P2,
-            pk_form: PkForm::Complex,
+            ..Sweep::new(&wing, &schedule, &table, fit)
         };
         sweep.run(&()).unwrap().methods.p2.unwrap()
     };
@@ -562,13 +553,9 @@ fn inertial_and_body_frame_give_the_same_roots() {
         let schedule = speeds([30.0, 50.0], wing.density());
         let smooth = FromFunction::new(26, q);
         let sweep = Sweep {
-            structure,
-            schedule: &schedule,
-            table: &table,
-            fit: &fit,
             smooth: Some(&smooth),
             method: Method::P2,
-            pk_form: PkForm::Complex,
+            ..Sweep::new(structure, &schedule, &table, &fit)
         };
         sweep.run(&()).unwrap().methods.polished.unwrap()
     };

@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::terminal::{Bar, Console};
 use fladder_stability::{
     self as stability, Aerodynamics, DEFAULT_DAMPING_LIMIT, OperatingPoint, PiecewiseQuadratic,
-    PkForm, Sweep, SweepError, SweepResult, System,
+    Sweep, SweepError, SweepResult, System,
 };
 
 /// Air density of the case, kg/m³.
@@ -101,13 +101,9 @@ pub(crate) fn run(
         }
     };
     let sweep = Sweep {
-        structure: &system,
-        schedule: &points,
-        table: &forces.table,
-        fit: &fit,
         smooth: Some(smooth),
         method: method.into(),
-        pk_form: PkForm::default(),
+        ..Sweep::new(&system, &points, &forces.table, &fit)
     };
     let bar = Bar::new(console.is_quiet());
     bar.begin("sweeping speeds", sweep.steps() as u64);

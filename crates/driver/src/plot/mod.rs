@@ -73,6 +73,7 @@ mod tests {
             branch: branch.name.clone(),
             kind: Kind::Elastic,
             altitude: None,
+            sensitivities: None,
             shape: Vec::new(),
         };
         let result = MethodResult {

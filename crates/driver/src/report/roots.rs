@@ -265,6 +265,7 @@ mod tests {
             branch: "elastic:5".to_owned(),
             kind: Kind::Elastic,
             altitude: None,
+            sensitivities: None,
             shape: Vec::new(),
         }
     }

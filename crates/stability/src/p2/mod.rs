@@ -12,7 +12,10 @@ mod patches;
 mod roots;
 
 pub use roots::Candidate;
-pub(crate) use roots::{REAL_ROOT, ZERO_ROOT, candidates, roots, roots_near, within_cells};
+pub(crate) use roots::{
+    REAL_ROOT, ZERO_ROOT, candidates, candidates_of, low_candidates, roots, roots_near,
+    within_cells,
+};
 
 use faer::{Mat, c64};
 

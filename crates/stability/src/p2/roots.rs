@@ -118,8 +118,42 @@ pub(crate) fn candidates(
     reduced: &Reduced,
     tolerance: f64,
 ) -> Result<(Vec<Candidate>, usize), NoConvergence> {
+    candidates_where(fit, reduced, tolerance, |_| true)
+}
+
+/// Candidates of the cells that straddle $k = 0$ alone, and the number of zero
+/// roots.
+pub(crate) fn low_candidates(
+    fit: &PiecewiseQuadratic,
+    reduced: &Reduced,
+    tolerance: f64,
+) -> Result<(Vec<Candidate>, usize), NoConvergence> {
+    candidates_where(fit, reduced, tolerance, |cell| cell.is_mirrored)
+}
+
+/// Candidates of one cell that are not zero.
+pub(crate) fn candidates_of(
+    cell: &Cell,
+    reduced: &Reduced,
+    tolerance: f64,
+) -> Result<Vec<c64>, NoConvergence> {
+    let roots = cell_eigenvalues(cell, reduced)?;
+    let values = roots.values.into_iter().filter(|p| p.norm() >= ZERO_ROOT);
+    Ok(values
+        .filter_map(|p| accept(cell, 0, p, tolerance))
+        .map(|candidate| candidate.p)
+        .collect())
+}
+
+fn candidates_where(
+    fit: &PiecewiseQuadratic,
+    reduced: &Reduced,
+    tolerance: f64,
+    wanted: impl Fn(&Cell) -> bool,
+) -> Result<(Vec<Candidate>, usize), NoConvergence> {
     let (mut found, mut zeros) = (Vec::new(), 0);
-    for (index, cell) in fit.cells.iter().enumerate() {
+    let cells = fit.cells.iter().enumerate();
+    for (index, cell) in cells.filter(|(_, cell)| wanted(cell)) {
         let roots = cell_eigenvalues(cell, reduced)?;
         let is_home = cell.is_mirrored && cell.g[0] < 0.0 && cell.g[1] > 0.0;
         let is_zero = |p: &&c64| p.norm() < ZERO_ROOT;

@@ -2,6 +2,9 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 #![allow(unreachable_pub, reason = "the module is compiled into each test")]
 
+pub mod strip;
+pub mod theodorsen;
+
 use std::path::PathBuf;
 
 use faer::{Mat, c64};
@@ -81,6 +84,84 @@ pub fn section(name: &str, g: impl Fn(f64) -> bool) -> Section {
     }
 }
 
+/// $Q(p)$ of a section in closed form, $B_0 + B_1p + B_2p^2 + l(w_0 + w_1p)^TC(p)$.
+pub struct SectionForces {
+    b: [Mat<f64>; 3],
+    l: Vec<f64>,
+    w: [Vec<f64>; 2],
+    /// Lag terms of a rational $C$; the exact function without them.
+    lags: Vec<(f64, f64)>,
+}
+
+impl SectionForces {
+    pub fn of(file: &Value) -> Self {
+        let rational = &file["C"];
+        let lags = if rational.is_object() {
+            let (a, b) = (numbers(&rational["a"]), numbers(&rational["b"]));
+            a.into_iter().zip(b).collect()
+        } else {
+            Vec::new()
+        };
+        Self {
+            b: ["B0", "B1", "B2"].map(|name| matrix(&file[name])),
+            l: numbers(&file["l"]),
+            w: ["w0", "w1"].map(|name| numbers(&file[name])),
+            lags,
+        }
+    }
+
+    pub fn q(&self, p: c64) -> Mat<c64> {
+        let lift = if self.lags.is_empty() {
+            theodorsen::theodorsen(p)
+        } else {
+            let lost: c64 = self.lags.iter().map(|(a, b)| p * *a / (p + *b)).sum();
+            c64::new(1.0, 0.0) - lost
+        };
+        let [b0, b1, b2] = &self.b;
+        Mat::from_fn(b0.nrows(), b0.ncols(), |i, j| {
+            let wash = p * self.w[1][j] + self.w[0][j];
+            p * (p * b2[(i, j)] + b1[(i, j)]) + b0[(i, j)] + lift * wash * self.l[i]
+        })
+    }
+}
+
+/// A file of comma-separated values: the columns of its head and the rows.
+pub struct Columns {
+    head: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Columns {
+    pub fn read(name: &str) -> Self {
+        let text = std::fs::read_to_string(data_path(name)).unwrap();
+        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+        let split = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
+        let head = split(lines.next().unwrap());
+        Self {
+            head,
+            rows: lines.map(split).collect(),
+        }
+    }
+
+    fn column(&self, name: &str) -> usize {
+        self.head.iter().position(|head| head == name).unwrap()
+    }
+
+    /// A column as words.
+    pub fn words(&self, name: &str) -> Vec<&str> {
+        let column = self.column(name);
+        self.rows.iter().map(|row| row[column].as_str()).collect()
+    }
+
+    /// A column as numbers.
+    pub fn numbers(&self, name: &str) -> Vec<f64> {
+        self.words(name)
+            .into_iter()
+            .map(|word| word.parse().unwrap())
+            .collect()
+    }
+}
+
 /// The 26-mode free-flying wing with aerodynamics in closed form.
 pub struct Wing {
     pub file: Value,
@@ -146,6 +227,14 @@ impl Wing {
             damping,
             closed_form,
         }
+    }
+
+    /// The same wing where gravity does not act.
+    pub fn without_gravity(mut self) -> Self {
+        for i in 0..6 {
+            (0..6).for_each(|j| self.stiffness[(i, j)] = 0.0);
+        }
+        self
     }
 
     pub fn semichord(&self) -> f64 {
