@@ -33,6 +33,10 @@ const MOST_HALVINGS: usize = 7;
 /// Rounds of search before the list is given up.
 const ROUNDS: usize = 3;
 
+/// Rounds of search on the real axis: the second finds what lies beside what
+/// the first found.
+const REAL_ROUNDS: usize = 2;
+
 /// Roots of one flight condition, inside the region and somewhat outside.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct List {
@@ -70,13 +74,26 @@ impl Search<'_> {
         list
     }
 
+    /// Adds what the seeds lead to and the real roots between them, and counts.
     fn extend(&self, list: &mut List, seeds: Vec<Seed>) {
+        self.add(list, seeds);
+        for _ in 0..REAL_ROUNDS {
+            let values = list.values();
+            let missing = self.census(&values, list.zeros).missing_on_real_axis();
+            if missing.is_empty() {
+                break;
+            }
+            self.add(list, missing.into_iter().map(Seed::new).collect());
+        }
+        list.tally = self.census(&list.values(), list.zeros).tally();
+    }
+
+    fn add(&self, list: &mut List, seeds: Vec<Seed>) {
         for root in newton(self.pencil, seeds).into_iter().flatten() {
             if self.is_kept(root.p) {
                 add_new(&mut list.roots, root);
             }
         }
-        list.tally = self.census(&list.values(), list.zeros).tally();
     }
 
     fn is_kept(&self, p: c64) -> bool {

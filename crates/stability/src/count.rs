@@ -57,6 +57,16 @@ impl Claim {
         }
     }
 
+    /// The part of the real axis that is free of poles, cut and what lies
+    /// beside them.
+    pub(crate) fn real_range(&self) -> [f64; 2] {
+        let left = match self.pole {
+            Some(pole) => (CUT_PART * pole).max(self.region.g[0]),
+            None => RIGHT_OF_CUT,
+        };
+        [left, self.region.g[1]]
+    }
+
     /// Left end of the box on the real axis: between the origin and the first
     /// pole, or right of the origin where a cut begins there.
     fn left_edge(&self, part: f64) -> f64 {

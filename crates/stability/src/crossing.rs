@@ -29,6 +29,12 @@ pub(crate) trait Resolver: Sync {
         None
     }
 
+    /// Change of the root with the place in the sweep; none where it costs too
+    /// much.
+    fn slope(&self, _parameter: f64, _pair: &Eigenpair) -> Option<c64> {
+        None
+    }
+
     /// Derivatives of a crossing with respect to the sweep's parameters.
     fn sensitivities(&self, _parameter: f64, _pair: &Eigenpair) -> Vec<Sensitivity> {
         Vec::new()

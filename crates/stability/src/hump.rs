@@ -1,11 +1,13 @@
 //! Branches that touch growth between two speeds.
 //!
 //! A hump mode grows over a short range of speeds only; where both of its
-//! crossings lie between two neighbouring speeds no sign changes. The secants
-//! through the speeds on either side bound a concave damping from above: where
-//! they meet above zero, the top is searched for by golden section, and where
-//! it is positive there are two crossings. A dip of a growing branch below
-//! zero is the same upside down.
+//! crossings lie between two neighbouring speeds no sign changes. The lines on
+//! both sides, tangents where the method has them and the secants through the
+//! speeds beyond, bound a concave damping from above: where they meet above
+//! zero the top is searched for by golden section, and where it is positive
+//! there are two crossings. A dip of a growing branch below zero is the same
+//! upside down. A hump much narrower than a step, of which the neighbouring
+//! speeds know nothing, is not seen.
 
 use crate::crossing::{Bracketed, Resolver, between};
 use crate::eigenpair::Eigenpair;
@@ -13,6 +15,9 @@ use crate::track::Track;
 
 /// Sections of the search: the top is then known to 1e-4 of a step.
 const SECTIONS: usize = 20;
+
+/// Tangents are worth their cost for roots this near to the axis.
+const NEAR_AXIS: f64 = 0.02;
 
 /// Shorter part of the golden section.
 const SHORT: f64 = 0.381_966_011_250_105;
@@ -32,9 +37,21 @@ pub(crate) fn hidden_crossings(
         }
         let side = if near.p.re > 0.0 { -1.0 } else { 1.0 };
         let value = |root: &Eigenpair| side * root.p.re;
-        let before = step.checked_sub(1).map(|at| value(&roots[at]));
-        let after = roots.get(step + 2).map(value);
-        if bound(before, [value(near), value(far)], after) <= 0.0 {
+        let values = [value(near), value(far)];
+        let rise = step.checked_sub(1).map(|at| values[0] - value(&roots[at]));
+        let fall = roots.get(step + 2).map(|after| values[1] - value(after));
+        let tangent = |at: usize| {
+            let root = &roots[at];
+            let is_near = root.p.re.abs() < NEAR_AXIS;
+            let place = (track.first + at) as f64;
+            is_near
+                .then(|| resolver.slope(place, root))
+                .flatten()
+                .map(|slope| side * slope.re)
+        };
+        let is_worth = bound(rise, values, fall) > 0.0
+            || bound(tangent(step), values, tangent(step + 1).map(|slope| -slope)) > 0.0;
+        if !is_worth {
             continue;
         }
         let start = (track.first + step) as f64;
@@ -48,11 +65,9 @@ pub(crate) fn hidden_crossings(
     found
 }
 
-/// Highest value that a concave function may take between two places, from
-/// the secants outside.
-fn bound(before: Option<f64>, [near, far]: [f64; 2], after: Option<f64>) -> f64 {
-    let rise = before.map(|before| near - before);
-    let fall = after.map(|after| far - after);
+/// Highest value that a concave function may take between two places: `rise`
+/// a step away from the first, `fall` a step back from the second.
+fn bound(rise: Option<f64>, [near, far]: [f64; 2], fall: Option<f64>) -> f64 {
     match (rise, fall) {
         (None, None) => near.max(far),
         (Some(rise), None) => near + rise.max(0.0),
@@ -127,6 +142,11 @@ mod tests {
     impl Resolver for Hump {
         fn near(&self, parameter: f64, _: &Eigenpair) -> Option<Eigenpair> {
             Some(pair(parameter))
+        }
+
+        fn slope(&self, parameter: f64, _: &Eigenpair) -> Option<c64> {
+            let rate = -2.0 * (parameter - 2.45) / 0.2_f64.powi(2);
+            Some(c64::new((damping(parameter) + 0.01) * rate, 0.0))
         }
     }
 

@@ -32,6 +32,7 @@ mod pencil;
 mod pk;
 mod polish;
 mod rational;
+mod real_axis;
 mod refined;
 mod report;
 mod resolvers;

@@ -76,6 +76,12 @@ impl Resolver for PolishedResolver<'_> {
         (likeness > LEAST_LIKENESS).then_some((point.parameter, pair))
     }
 
+    fn slope(&self, parameter: f64, pair: &Eigenpair) -> Option<c64> {
+        let local = self.local(parameter, pair.p);
+        let slope = quotient(&local.slope, pair, &local.change);
+        (slope.re.is_finite() && slope.im.is_finite()).then_some(slope)
+    }
+
     fn sensitivities(&self, parameter: f64, pair: &Eigenpair) -> Vec<Sensitivity> {
         let local = self.local(parameter, pair.p);
         let along = quotient(&local.slope, pair, &local.change);

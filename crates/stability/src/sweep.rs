@@ -35,9 +35,27 @@ pub enum Method {
     P2,
     /// p-k.
     Pk,
+    /// p2 alone.
+    Unrefined,
+    /// The refined roots alone.
+    Refined,
     /// All.
     #[default]
     Both,
+}
+
+impl Method {
+    fn has_p2(self) -> bool {
+        matches!(self, Self::P2 | Self::Unrefined | Self::Both)
+    }
+
+    fn has_refined(self) -> bool {
+        matches!(self, Self::P2 | Self::Refined | Self::Both)
+    }
+
+    fn has_pk(self) -> bool {
+        matches!(self, Self::Pk | Self::Both)
+    }
 }
 
 /// How the refined roots are found.
@@ -161,12 +179,12 @@ impl<'a> Sweep<'a> {
 impl Sweep<'_> {
     /// Number of calls of [`Progress::advance`] in a whole run.
     pub fn steps(&self) -> usize {
-        let methods = match self.method {
-            Method::P2 | Method::Pk => 1,
-            Method::Both => 2,
-        };
-        let polished = usize::from(self.smooth.is_some() && self.method != Method::Pk);
-        (methods + polished) * self.schedule.count()
+        let runs = [
+            self.method.has_p2(),
+            self.method.has_pk(),
+            self.method.has_refined() && self.smooth.is_some(),
+        ];
+        runs.iter().filter(|runs| **runs).count() * self.schedule.count()
     }
 
     /// Solves every flight condition, follows the roots and finds crossings.
@@ -187,13 +205,13 @@ impl Sweep<'_> {
             progress,
         };
         let mut methods = Methods::default();
-        if self.method != Method::Pk {
+        if self.method.has_p2() {
             methods.p2 = Some(run.p2()?);
-            if let Some(smooth) = self.smooth {
-                methods.polished = Some(run.polished(smooth)?);
-            }
         }
-        if self.method != Method::P2 {
+        if let (true, Some(smooth)) = (self.method.has_refined(), self.smooth) {
+            methods.polished = Some(run.polished(smooth)?);
+        }
+        if self.method.has_pk() {
             methods.pk = Some(run.pk()?);
         }
         let density = points[0].density;

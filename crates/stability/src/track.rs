@@ -181,3 +181,74 @@ fn weigh(vector: &[c64], mass: &Mat<f64>) -> Vec<c64> {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ORDER: usize = 8;
+
+    /// Eight roots that cross and veer, in the order of a shuffle.
+    fn station(speed: usize, shuffle: usize) -> Vec<Eigenpair> {
+        let t = speed as f64 / 40.0;
+        let pair = |mode: usize| {
+            let own = mode as f64;
+            // Neighbours exchange their frequencies, and their vectors turn
+            // into each other on the way.
+            let partner = mode ^ 1;
+            let turn = (20.0 * (t - 0.5)).tanh().mul_add(0.5, 0.5) * 0.9;
+            let vector = |i: usize| match i {
+                i if i == mode => c64::new((1.0 - turn * turn).sqrt(), 0.0),
+                i if i == partner => c64::new(0.3 * turn, 0.1 * turn),
+                _ => c64::new(0.0, 0.0),
+            };
+            let drift = if mode % 2 == 0 { t } else { -t };
+            Eigenpair {
+                p: c64::new(-0.01 - 0.002 * own, 0.2 + 0.15 * own + 0.16 * drift),
+                right: (0..ORDER).map(vector).collect(),
+                left: Vec::new(),
+            }
+        };
+        (0..ORDER)
+            .map(|place| pair((place * shuffle + speed * (shuffle - 1)) % ORDER))
+            .collect()
+    }
+
+    /// The order in which the roots of a speed are listed does not matter.
+    #[test]
+    fn shuffled_roots_give_the_same_tracks() {
+        let mass = Mat::from_fn(ORDER, ORDER, |i, j| f64::from(u8::from(i == j)));
+        let tracks = |shuffle: usize| {
+            let roots: Vec<Vec<Eigenpair>> =
+                (0..=40).map(|speed| station(speed, shuffle)).collect();
+            let stations: Vec<Station<'_>> = roots
+                .iter()
+                .map(|roots| Station {
+                    roots,
+                    rate: 100.0,
+                    mass: &mass,
+                })
+                .collect();
+            let mut tracks: Vec<Vec<(f64, f64)>> = follow(&stations)
+                .into_iter()
+                .map(|track| {
+                    track
+                        .roots
+                        .iter()
+                        .map(|root| (root.p.re, root.p.im))
+                        .collect()
+                })
+                .collect();
+            tracks.sort_by(|a: &Vec<(f64, f64)>, b| a[0].1.total_cmp(&b[0].1));
+            tracks
+        };
+        let straight = tracks(1);
+        assert_eq!(straight.len(), ORDER);
+        for track in &straight {
+            assert!(track.iter().all(|root| root.0 == track[0].0), "{track:?}");
+        }
+        for shuffle in [3, 5, 7] {
+            assert_eq!(tracks(shuffle), straight);
+        }
+    }
+}

@@ -5,7 +5,7 @@
 pub mod strip;
 pub mod theodorsen;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use faer::{Mat, c64};
 use fladder_stability::{
@@ -13,10 +13,13 @@ use fladder_stability::{
 };
 use serde_json::Value;
 
+/// A file of `tests/data`, from whichever package the module is compiled in.
 pub fn data_path(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../tests/data")
-        .join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .map(|folder| folder.join("tests/data").join(name))
+        .find(|path| path.exists())
+        .unwrap()
 }
 
 pub fn read_json(name: &str) -> Value {
