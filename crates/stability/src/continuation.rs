@@ -1,8 +1,8 @@
 //! Refined roots over a sweep by continuation, each speed certified.
 //!
 //! A few speeds are solved from every cell. From each the roots are followed
-//! to both sides: the secant through the last two speeds is the seed, Newton's
-//! iteration gives the root, and the count tells whether the list is still
+//! to both sides: the parabola through the last three speeds is the seed,
+//! Newton's iteration gives the root, and the count tells whether the list is still
 //! complete. Where it is not (a root came in over the border, a pair turned
 //! into two real roots) the search of [`complete`](crate::complete) finds what
 //! is missing; where that fails too, the speed is solved from every cell.
@@ -17,14 +17,14 @@ use crate::aerodynamics::Aerodynamics;
 use crate::complete::{List, SEED_TOLERANCE, Search};
 use crate::count::Claim;
 use crate::linalg::NoConvergence;
-use crate::p2::{PiecewiseQuadratic, low_candidates};
+use crate::p2::{PiecewiseQuadratic, free_modes, low_candidates};
 use crate::pencil::Pencil;
 use crate::polish::Seed;
 use crate::refined::RefinedRoots;
 use crate::structure::Reduced;
 
 /// Speeds of one chain; each chain costs one solution from every cell.
-const CHAIN: usize = 64;
+const CHAIN: usize = 100;
 
 /// Roots at every speed, or the number of the speed that failed.
 pub(crate) struct Continuation<'a> {
@@ -42,11 +42,28 @@ struct Trail {
     last: Vec<Past>,
 }
 
-/// One root at the last speed and at the one before.
+/// One root at the last speeds, the latest first.
 struct Past {
-    rate: c64,
-    before: Option<c64>,
+    rates: Vec<c64>,
     vector: Vec<c64>,
+}
+
+/// Speeds through which the next root is foretold.
+const MEMORY: usize = 3;
+
+impl Past {
+    fn last(&self) -> c64 {
+        self.rates[0]
+    }
+
+    /// Polynomial through the last speeds, one step on.
+    fn ahead(&self) -> c64 {
+        match self.rates.as_slice() {
+            [last, before, first, ..] => (last - before) * 3.0 + first,
+            [last, before] => last * 2.0 - before,
+            _ => self.last(),
+        }
+    }
 }
 
 impl Continuation<'_> {
@@ -140,8 +157,11 @@ impl Continuation<'_> {
             let reduced = &self.reduced[speed];
             let pencil = Pencil::new(reduced, self.smooth);
             let search = self.search(&pencil, claim);
-            let (low, zeros) =
-                low_candidates(self.fit, reduced, SEED_TOLERANCE).map_err(fault)?;
+            let (low, zeros) = if claim.has_cut() {
+                low_candidates(self.fit, reduced, SEED_TOLERANCE).map_err(fault)?
+            } else {
+                (Vec::new(), free_modes(self.fit, reduced))
+            };
             let mut list = search.list(trail.seeds(reduced), zeros);
             if !list.is_complete() {
                 search.complete(&mut list).map_err(fault)?;
@@ -160,46 +180,39 @@ impl Continuation<'_> {
 }
 
 impl Trail {
-    /// Seeds on the secants through the last two speeds.
+    /// Where the roots are expected.
     fn seeds(&self, reduced: &Reduced) -> Vec<Seed> {
-        let seed = |past: &Past| {
-            let ahead = match past.before {
-                Some(before) => past.rate * 2.0 - before,
-                None => past.rate,
-            };
-            let is_real = past.rate.im == 0.0;
-            let mut p = ahead / reduced.rate;
-            if is_real || p.im <= 0.0 {
-                p.im = if is_real {
-                    0.0
-                } else {
-                    past.rate.im / reduced.rate
-                };
+        let seed = |(number, past): (usize, &Past)| {
+            let mut p = past.ahead() / reduced.rate;
+            let last = past.last();
+            if last.im == 0.0 || p.im <= 0.0 {
+                p.im = last.im / reduced.rate;
             }
             Seed {
                 p,
                 vector: Some(past.vector.clone()),
+                parent: Some(number),
             }
         };
-        self.last.iter().map(seed).collect()
+        self.last.iter().enumerate().map(seed).collect()
     }
 
-    /// Takes the roots of the next speed; a root continues the one whose
-    /// secant came nearest.
+    /// Takes the roots of the next speed; one of another kind, real or complex,
+    /// than its parent begins anew.
     fn advance(&mut self, list: &List, reduced: &Reduced) {
         let next = list
             .roots
             .iter()
             .map(|root| {
                 let rate = root.p * reduced.rate;
-                let nearest = self
-                    .last
-                    .iter()
-                    .filter(|past| (past.rate.im == 0.0) == (rate.im == 0.0))
-                    .min_by(|a, b| (a.rate - rate).norm().total_cmp(&(b.rate - rate).norm()));
+                let parent = root.parent.and_then(|number| self.last.get(number));
+                let before = parent
+                    .filter(|past| (past.last().im == 0.0) == (rate.im == 0.0))
+                    .map_or(&[][..], |past| &past.rates);
+                let mut rates = vec![rate];
+                rates.extend(before.iter().take(MEMORY - 1));
                 Past {
-                    rate,
-                    before: nearest.map(|past| past.rate),
+                    rates,
                     vector: root.vector.clone(),
                 }
             })

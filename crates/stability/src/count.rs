@@ -16,7 +16,6 @@
 use faer::c64;
 
 use crate::aerodynamics::Aerodynamics;
-use crate::linalg::Lu;
 use crate::p2::Region;
 use crate::pencil::Pencil;
 use crate::structure::Hysteresis;
@@ -30,8 +29,12 @@ const LEFT_PARTS: [f64; 5] = [0.5, 0.4, 0.62, 0.3, 0.75];
 /// Pieces into which each long side of a curve is cut at first.
 const PIECES: usize = 12;
 
-/// Pieces of a short side.
-const FEW_PIECES: usize = 3;
+/// Pieces of the top and of short sides.
+const TOP_PIECES: usize = 6;
+const FEW_PIECES: usize = 2;
+
+/// Pieces between corners that are close together already.
+const ONE_PIECE: usize = 1;
 
 /// Where roots are claimed to be complete.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +68,11 @@ impl Claim {
             None => RIGHT_OF_CUT,
         };
         [left, self.region.g[1]]
+    }
+
+    /// Whether a part of the region lies beside the cut.
+    pub(crate) fn has_cut(&self) -> bool {
+        self.real_range()[0] > self.region.g[0]
     }
 
     /// Left end of the box on the real axis: between the origin and the first
@@ -130,18 +138,28 @@ impl Census<'_> {
         });
         let edge = self.claim.left_edge(edge);
         let [left, right] = region.g;
-        let above = self.rectangle([left, right], [floor, region.k_max])?;
-        let half = [
+        let beside_cut = [Leg::new(over_the_origin(left, edge, floor), ONE_PIECE)];
+        let box_top = [Leg::new(over_the_origin(edge, right, floor), ONE_PIECE)];
+        let ends = [
             Leg::new(
                 vec![c64::new(right, 0.0), c64::new(right, floor)],
                 FEW_PIECES,
             ),
-            Leg::new(over_the_origin(right, edge, floor), FEW_PIECES),
             Leg::new(vec![c64::new(edge, floor), c64::new(edge, 0.0)], FEW_PIECES),
         ];
-        let half = self.turns(&half, Hysteresis::LeftOut)?;
+        let (upper, lower) = (Hysteresis::Included, Hysteresis::LeftOut);
+        let shared = self.turns(&box_top, upper)?;
+        let above = self.turns(&sides([left, right], [floor, region.k_max]), upper)?
+            + self.turns(&beside_cut, upper)?
+            + shared;
+        let along_box = if self.pencil.reduced.is_hysteretic() {
+            self.turns(&box_top, lower)?
+        } else {
+            shared
+        };
+        let half = self.turns(&ends, lower)? - along_box;
         Some(Tally {
-            above,
+            above: above.round() as i64,
             beside_axis: (2.0 * half).round() as i64,
             listed: self.listed(floor, edge),
         })
@@ -149,17 +167,11 @@ impl Census<'_> {
 
     /// Roots in a rectangle above the real axis that are not in the list.
     pub(crate) fn rectangle(&self, g: [f64; 2], k: [f64; 2]) -> Option<i64> {
-        let corner = c64::new;
-        let sides = vec![
-            corner(g[1], k[0]),
-            corner(g[1], k[1]),
-            corner(g[0], k[1]),
-            corner(g[0], k[0]),
-        ];
         let bottom = over_the_origin(g[0], g[1], k[0]);
-        let pieces = if bottom.len() > 2 { FEW_PIECES } else { PIECES };
-        let legs = [Leg::new(sides, PIECES), Leg::new(bottom, pieces)];
-        let turns = self.turns(&legs, Hysteresis::Included)?;
+        let pieces = if bottom.len() > 3 { ONE_PIECE } else { PIECES };
+        let bottom = [Leg::new(bottom, pieces)];
+        let turns = self.turns(&sides(g, k), Hysteresis::Included)?
+            + self.turns(&bottom, Hysteresis::Included)?;
         Some(turns.round() as i64)
     }
 
@@ -201,33 +213,38 @@ impl Census<'_> {
 
     /// Direction of the deflated determinant at every point.
     fn directions(&self, points: &[c64], hysteresis: Hysteresis) -> Vec<c64> {
-        let mut directions = vec![c64::new(1.0, 0.0); points.len()];
-        self.pencil
-            .each_operator(points, hysteresis, |number, operator| {
-                let (_, mut direction) = Lu::new(operator).determinant();
-                let p = points[number];
-                let mut divide = |root: c64| {
-                    let factor = p - root;
-                    direction *= factor.conj() / factor.norm();
-                };
-                for &root in self.roots {
-                    divide(root);
-                    if root.im != 0.0 {
-                        divide(root.conj());
-                    }
+        let mut directions = self.pencil.directions(points, hysteresis);
+        for (direction, p) in directions.iter_mut().zip(points) {
+            let mut divide = |root: c64| {
+                let factor = p - root;
+                *direction *= factor.conj() / factor.norm_sqr().sqrt();
+            };
+            for &root in self.roots {
+                divide(root);
+                if root.im != 0.0 {
+                    divide(root.conj());
                 }
-                (0..self.zeros).for_each(|_| divide(c64::new(0.0, 0.0)));
-                directions[number] = direction;
-            });
+            }
+            (0..self.zeros).for_each(|_| divide(c64::new(0.0, 0.0)));
+        }
         directions
     }
 }
 
-/// Corners on the line $k =$ `height` from `from` to `to`, close together near
+/// Right side upwards, top to the left, left side downwards.
+fn sides(g: [f64; 2], k: [f64; 2]) -> [Leg; 3] {
+    let corner = c64::new;
+    [
+        Leg::new(vec![corner(g[1], k[0]), corner(g[1], k[1])], PIECES),
+        Leg::new(vec![corner(g[1], k[1]), corner(g[0], k[1])], TOP_PIECES),
+        Leg::new(vec![corner(g[0], k[1]), corner(g[0], k[0])], PIECES),
+    ]
+}
+
+/// Corners on the line $k =$ `height` between two places, close together near
 /// the origin: the roots of slow motions sit below, and would turn the phase
 /// by whole circles between two distant samples.
-fn over_the_origin(from: f64, to: f64, height: f64) -> Vec<c64> {
-    let (low, high) = (from.min(to), from.max(to));
+fn over_the_origin(low: f64, high: f64, height: f64) -> Vec<c64> {
     let mut places = vec![low, high];
     let mut distance = 0.5 * height;
     while distance < low.abs().max(high.abs()) {
@@ -242,9 +259,6 @@ fn over_the_origin(from: f64, to: f64, height: f64) -> Vec<c64> {
         places.push(0.0);
     }
     places.sort_by(f64::total_cmp);
-    if from > to {
-        places.reverse();
-    }
     places.into_iter().map(|g| c64::new(g, height)).collect()
 }
 

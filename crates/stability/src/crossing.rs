@@ -29,10 +29,10 @@ pub(crate) trait Resolver: Sync {
         None
     }
 
-    /// Change of the root with the place in the sweep; none where it costs too
-    /// much.
-    fn slope(&self, _parameter: f64, _pair: &Eigenpair) -> Option<c64> {
-        None
+    /// Change of $g$ a step of the sweep, at every speed of every track where
+    /// the method has it at little cost.
+    fn tangents(&self, tracks: &[Track]) -> Vec<Vec<Option<f64>>> {
+        vec![Vec::new(); tracks.len()]
     }
 
     /// Derivatives of a crossing with respect to the sweep's parameters.

@@ -40,6 +40,20 @@ pub(crate) fn inverse_iteration(p: c64, operator: Mat<c64>) -> Eigenpair {
     }
 }
 
+/// The same where the right vector is known.
+pub(crate) fn left_vector(p: c64, operator: Mat<c64>, right: Vec<c64>) -> Eigenpair {
+    let order = operator.nrows();
+    let mut lu = Lu::new(operator);
+    lu.guard_pivots();
+    let mut left = start(order);
+    for _ in 0..ROUNDS {
+        lu.solve_adjoint(left.as_mut());
+        normalise(&mut left);
+    }
+    let left = (0..order).map(|i| left[(i, 0)]).collect();
+    Eigenpair { p, right, left }
+}
+
 /// A start vector without symmetry, so that no family of modes is missed.
 fn start(order: usize) -> Mat<c64> {
     Mat::from_fn(order, 1, |i, _| {

@@ -40,9 +40,6 @@ const MAX_STEPS: usize = 12;
 pub(crate) struct Point {
     pub(crate) parameter: f64,
     pub(crate) k: f64,
-    pub(crate) vector: Vec<c64>,
-    /// Steps that were taken.
-    pub(crate) steps: usize,
 }
 
 /// The crossing near a start, within `bounds`; `None` where the iteration
@@ -56,7 +53,7 @@ pub(crate) fn flutter_point(
     let scale = turned_to_unit(&start.right);
     let anchor: Vec<c64> = start.right.iter().map(|value| value * scale).collect();
     let (mut x, mut p, mut t) = (anchor.clone(), start.p, parameter);
-    for steps in 1..=MAX_STEPS {
+    for _ in 0..MAX_STEPS {
         let Local {
             operator,
             slope,
@@ -88,8 +85,6 @@ pub(crate) fn flutter_point(
             return Some(Point {
                 parameter: t,
                 k: p.im,
-                vector: x,
-                steps,
             });
         }
     }

@@ -26,6 +26,7 @@ mod flutter_point;
 mod frame;
 mod gaf;
 mod hump;
+mod lane_lu;
 mod linalg;
 mod p2;
 mod pencil;

@@ -4,14 +4,20 @@
 //! $$ T(p) = p^2\tilde M + p\,\tilde C + K - q_\infty\sum_jw_j(p)R_j $$
 //! is a combination of real matrices with complex factors, and its values at
 //! $m$ points are one real matrix product: entries × matrices times matrices ×
-//! $2m$. That is several times faster than one point after the other, and is
-//! what a count of roots and a continuation over speed spend their time on.
+//! $2m$. Where only the determinant is wanted, as in a count of roots, eight
+//! points go through one factorisation side by side.
 
 use faer::{Mat, c64};
 
+use pulp::Arch;
+
 use crate::aerodynamics::{Aerodynamics, Expansion};
+use crate::lane_lu::{LaneMatrices, WIDTH};
 use crate::linalg::real_product;
 use crate::structure::{Hysteresis, Reduced};
+
+/// Size of $p$ at which inertia and stiffness are weighed against each other.
+const MIDDLE: f64 = 0.5;
 
 /// Points of one product: enough for the product to run at full rate, few
 /// enough to stay in the cache.
@@ -29,6 +35,37 @@ struct Expanded<'a> {
     /// One column each for $\tilde M$, $\tilde C$, $K$ and the $q_\infty R_j$,
     /// entries column by column.
     matrices: Mat<f64>,
+    /// The same, those of one entry side by side, rows and columns in the order
+    /// and scale of the places: the direction of the determinant stays, and
+    /// few rows need an exchange.
+    terms: Vec<f64>,
+    places: Vec<Place>,
+}
+
+/// A mode in the order of elimination.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub(crate) mode: usize,
+    /// Factor of its row and of its column.
+    pub(crate) scale: f64,
+}
+
+/// Stiff modes first, whose diagonals are large at any $p$ of interest; the
+/// rigid ones, whose diagonals vanish with $p$, last.
+fn places(reduced: &Reduced) -> Vec<Place> {
+    let stiffness = |mode: usize| {
+        let inertia = reduced.mass[(mode, mode)].max(f64::MIN_POSITIVE);
+        reduced.stiffness[(mode, mode)].abs() / inertia
+    };
+    let mut modes: Vec<usize> = (0..reduced.order()).collect();
+    modes.sort_by(|a, b| stiffness(*b).total_cmp(&stiffness(*a)).then(a.cmp(b)));
+    let place = |mode: usize| {
+        let inertia = reduced.mass[(mode, mode)] * MIDDLE * MIDDLE;
+        let size = inertia + reduced.stiffness[(mode, mode)].abs();
+        let scale = 1.0 / size.max(f64::MIN_POSITIVE).sqrt();
+        Place { mode, scale }
+    };
+    modes.into_iter().map(place).collect()
 }
 
 /// $T$ or $T'$.
@@ -77,6 +114,47 @@ impl<'a> Pencil<'a> {
                     self.reduced.add_hysteresis(&mut operator);
                 }
                 visit(batch * BATCH + at, operator);
+            }
+        }
+    }
+
+    /// Direction of $\det T$ in the complex plane at every point; NaN where it
+    /// vanishes.
+    pub(crate) fn directions(&self, points: &[c64], hysteresis: Hysteresis) -> Vec<c64> {
+        let arch = Arch::new();
+        let mut lanes = LaneMatrices::new(self.reduced.order());
+        let mut directions = Vec::with_capacity(points.len());
+        for group in points.chunks(WIDTH) {
+            match &self.expanded {
+                Some(expanded) => {
+                    let weights = expanded.lane_weights(group);
+                    lanes.combine(arch, &expanded.terms, &weights);
+                    if hysteresis == Hysteresis::Included {
+                        self.reduced
+                            .add_hysteresis_to_lanes(&mut lanes, &expanded.places);
+                    }
+                }
+                None => self.fill(&mut lanes, group, hysteresis),
+            }
+            let found = lanes.determinants(arch);
+            directions.extend(&found[..group.len()]);
+        }
+        directions
+    }
+
+    /// One point a lane, the last in those that are left.
+    fn fill(&self, lanes: &mut LaneMatrices, points: &[c64], hysteresis: Hysteresis) {
+        let order = self.reduced.order();
+        let operators: Vec<Mat<c64>> = points
+            .iter()
+            .map(|p| self.operator(*p, hysteresis))
+            .collect();
+        for lane in 0..WIDTH {
+            let operator = &operators[lane.min(operators.len() - 1)];
+            for column in 0..order {
+                for row in 0..order {
+                    lanes.set(row, column, lane, operator[(row, column)]);
+                }
             }
         }
     }
@@ -145,10 +223,37 @@ impl<'a> Expanded<'a> {
         let matrices = Mat::from_fn(order * order, columns.len(), |entry, column| {
             columns[column][(entry % order, entry / order)]
         });
+        let places = places(reduced);
+        let mut terms = Vec::with_capacity(order * order * columns.len());
+        for column in &places {
+            for row in &places {
+                let scale = row.scale * column.scale;
+                let entry = (row.mode, column.mode);
+                terms.extend(columns.iter().map(|matrix| matrix[entry] * scale));
+            }
+        }
         Self {
             expansion,
             matrices,
+            terms,
+            places,
         }
+    }
+
+    /// Factors of the matrices at up to eight points; the last point fills the
+    /// lanes that are left.
+    fn lane_weights(&self, points: &[c64]) -> Vec<[[f64; WIDTH]; 2]> {
+        let mut weights = vec![[[0.0; WIDTH]; 2]; self.matrices.ncols()];
+        for lane in 0..WIDTH {
+            let p = points[lane.min(points.len() - 1)];
+            let head = [p * p, p, c64::new(1.0, 0.0)];
+            let loads = self.expansion.weights(p).into_iter().map(|w| -w);
+            for (weight, factor) in weights.iter_mut().zip(head.into_iter().chain(loads)) {
+                weight[0][lane] = factor.re;
+                weight[1][lane] = factor.im;
+            }
+        }
+        weights
     }
 
     /// Real and imaginary parts of the combination at every point.

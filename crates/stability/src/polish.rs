@@ -10,7 +10,7 @@
 use faer::{Mat, c64};
 
 use crate::aerodynamics::Aerodynamics;
-use crate::eigenpair::{Eigenpair, inverse_iteration, turned_to_unit};
+use crate::eigenpair::{Eigenpair, inverse_iteration, left_vector, turned_to_unit};
 use crate::linalg::{Lu, apply, inner};
 use crate::p2::{REAL_ROOT, ZERO_ROOT};
 use crate::pencil::Pencil;
@@ -43,11 +43,17 @@ pub(crate) struct Seed {
     pub(crate) p: c64,
     /// Right vector; without it inverse iteration finds one.
     pub(crate) vector: Option<Vec<c64>>,
+    /// Number of the root at another speed that it continues.
+    pub(crate) parent: Option<usize>,
 }
 
 impl Seed {
     pub(crate) fn new(p: c64) -> Self {
-        Self { p, vector: None }
+        Self {
+            p,
+            vector: None,
+            parent: None,
+        }
     }
 }
 
@@ -56,11 +62,14 @@ impl Seed {
 pub(crate) struct Root {
     pub(crate) p: c64,
     pub(crate) vector: Vec<c64>,
+    /// That of its seed.
+    pub(crate) parent: Option<usize>,
 }
 
 /// One iteration under way.
 struct Way {
     seed: c64,
+    parent: Option<usize>,
     p: c64,
     x: Vec<c64>,
     anchor: Vec<c64>,
@@ -120,6 +129,7 @@ impl Way {
                 is_quadratic: pencil.aerodynamics.expansion().is_some(),
                 is_hysteretic: pencil.reduced.is_hysteretic(),
             },
+            parent: seed.parent,
             seed: seed.p,
             p: seed.p,
             x: anchor.clone(),
@@ -195,7 +205,11 @@ impl Way {
         }
         let scale = turned_to_unit(&x);
         x.iter_mut().for_each(|value| *value *= scale);
-        Some(Root { p, vector: x })
+        Some(Root {
+            p,
+            vector: x,
+            parent: self.parent,
+        })
     }
 }
 
@@ -211,6 +225,7 @@ pub(crate) fn polish(
     let seed = Seed {
         p: seed,
         vector: start.map(<[c64]>::to_vec),
+        parent: None,
     };
     let root = newton(&pencil, vec![seed]).pop()??;
     Some(pencil.pair(root.p))
@@ -223,16 +238,18 @@ impl Pencil<'_> {
     }
 
     /// Several roots with both their vectors.
-    pub(crate) fn pairs(&self, roots: &[c64]) -> Vec<Eigenpair> {
+    pub(crate) fn pairs(&self, roots: &[&Root]) -> Vec<Eigenpair> {
         let mut pairs = Vec::with_capacity(roots.len());
         for hysteresis in [Hysteresis::Included, Hysteresis::LeftOut] {
-            let group: Vec<c64> = roots
+            let group: Vec<&Root> = roots
                 .iter()
                 .copied()
-                .filter(|p| Reduced::hysteresis_at(*p) == hysteresis)
+                .filter(|root| Reduced::hysteresis_at(root.p) == hysteresis)
                 .collect();
-            self.each_operator(&group, hysteresis, |number, operator| {
-                pairs.push(inverse_iteration(group[number], operator));
+            let points: Vec<c64> = group.iter().map(|root| root.p).collect();
+            self.each_operator(&points, hysteresis, |number, operator| {
+                let right = group[number].vector.clone();
+                pairs.push(left_vector(points[number], operator, right));
             });
         }
         sort(&mut pairs);

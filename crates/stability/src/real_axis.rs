@@ -10,18 +10,19 @@
 use faer::c64;
 
 use crate::count::Census;
-use crate::linalg::Lu;
 use crate::structure::Hysteresis;
 
 /// Nearest place to the origin; slower motions are told from zero roots by the
 /// quadratic problem alone.
-const NEAREST: f64 = 1e-7;
+const NEAREST: f64 = 1e-6;
 
 /// Each place is this much farther from the origin than the one before.
-const RATIO: f64 = 1.8;
+const RATIO: f64 = 2.0;
 
-/// Halvings of an interval that holds a root; Newton's iteration does the rest.
-const HALVINGS: usize = 14;
+/// Divisions of an interval that holds a root, each into as many parts as are
+/// evaluated together; Newton's iteration does the rest.
+const DIVISIONS: usize = 4;
+const PARTS: usize = 9;
 
 impl Census<'_> {
     /// A seed for every real root that the list lacks.
@@ -34,7 +35,7 @@ impl Census<'_> {
             if let (Some(first), Some(second)) = both
                 && first != second
             {
-                seeds.push(self.halve([ends[0], ends[1]], first));
+                seeds.push(self.divide([ends[0], ends[1]], first));
             }
         }
         seeds
@@ -61,31 +62,37 @@ impl Census<'_> {
     /// Whether the deflated determinant is positive; none at a known root.
     fn signs(&self, places: &[f64]) -> Vec<Option<bool>> {
         let points: Vec<c64> = places.iter().map(|g| c64::new(*g, 0.0)).collect();
-        let mut signs = vec![None; points.len()];
-        self.pencil
-            .each_operator(&points, Hysteresis::LeftOut, |number, operator| {
-                let (size, direction) = Lu::new(operator).determinant();
-                let mut value = direction.re;
-                let real = self.roots.iter().filter(|root| root.im == 0.0);
-                for root in real {
-                    value *= (points[number].re - root.re).signum();
-                }
-                if !self.zeros.is_multiple_of(2) {
-                    value *= points[number].re.signum();
-                }
-                signs[number] = size.is_finite().then_some(value > 0.0);
-            });
-        signs
+        let directions = self.pencil.directions(&points, Hysteresis::LeftOut);
+        let real: Vec<f64> = self
+            .roots
+            .iter()
+            .filter(|root| root.im == 0.0)
+            .map(|root| root.re)
+            .collect();
+        let deflated = |(g, direction): (&f64, c64)| {
+            let mut value = direction.re;
+            for root in &real {
+                value *= (g - root).signum();
+            }
+            if !self.zeros.is_multiple_of(2) {
+                value *= g.signum();
+            }
+            value.is_finite().then_some(value > 0.0)
+        };
+        places.iter().zip(directions).map(deflated).collect()
     }
 
-    fn halve(&self, [mut low, mut high]: [f64; 2], at_low: bool) -> c64 {
-        for _ in 0..HALVINGS {
-            let middle = f64::midpoint(low, high);
-            if self.signs(&[middle])[0] == Some(at_low) {
-                low = middle;
-            } else {
-                high = middle;
-            }
+    /// The middle of a small interval in which the sign changes.
+    fn divide(&self, [mut low, mut high]: [f64; 2], at_low: bool) -> c64 {
+        for _ in 0..DIVISIONS {
+            let step = (high - low) / PARTS as f64;
+            let inner: Vec<f64> = (1..PARTS).map(|part| low + step * part as f64).collect();
+            let change = self
+                .signs(&inner)
+                .iter()
+                .position(|sign| *sign != Some(at_low))
+                .unwrap_or(PARTS - 1);
+            (low, high) = (low + step * change as f64, low + step * (change + 1) as f64);
         }
         c64::new(f64::midpoint(low, high), 0.0)
     }

@@ -8,13 +8,11 @@
 //! poles in its place, around which false roots crowd. There a root of p2 is
 //! kept: refined where the refinement stays with it, as it is where not.
 
-use faer::c64;
-
 use crate::complete::{List, SEED_TOLERANCE, Search};
 use crate::eigenpair::Eigenpair;
 use crate::linalg::NoConvergence;
 use crate::p2::{Candidate, candidates, within_cells};
-use crate::polish::{Seed, is_same, polish, sort};
+use crate::polish::{Root, Seed, is_same, polish, sort};
 use crate::results::Count;
 use crate::track::alikeness;
 
@@ -46,11 +44,8 @@ impl Search<'_> {
     /// those of p2 beside the cut.
     pub(crate) fn finish(&self, list: &List, low: &[Candidate]) -> RefinedRoots {
         let region = self.claim.region;
-        let inside: Vec<c64> = list
-            .values()
-            .into_iter()
-            .filter(|p| region.holds(*p))
-            .collect();
+        let roots = list.roots.iter();
+        let inside: Vec<&Root> = roots.filter(|root| region.holds(root.p)).collect();
         let mut roots = self.pencil.pairs(&inside);
         for root in self.beside_the_cut(low) {
             let is_new = roots.iter().all(|other| !is_same(other.p, root.p));

@@ -1,18 +1,21 @@
 //! The root of a branch between two speeds, by each method.
 
 use faer::c64;
+use rayon::prelude::*;
 
 use crate::aerodynamics::Aerodynamics;
 use crate::crossing::Resolver;
 use crate::eigenpair::Eigenpair;
 use crate::flutter_point::{Local, Moving, change_along, flutter_point};
+use crate::hump::NEAR_AXIS;
+use crate::linalg::{apply, inner};
 use crate::pencil::Pencil;
 use crate::pk::PkProblem;
 use crate::sensitivity::{Parameter, Sensitivity, quotient, root_sensitivity};
 use crate::spline::AxisForces;
 use crate::structure::Reduced;
 use crate::sweep::{Sweep, reduced_at};
-use crate::track::{SMALL_RATE, alikeness};
+use crate::track::{SMALL_RATE, Track, alikeness};
 
 /// Cells whose border is within this part of their size of the expected root
 /// are solved.
@@ -76,10 +79,41 @@ impl Resolver for PolishedResolver<'_> {
         (likeness > LEAST_LIKENESS).then_some((point.parameter, pair))
     }
 
-    fn slope(&self, parameter: f64, pair: &Eigenpair) -> Option<c64> {
-        let local = self.local(parameter, pair.p);
-        let slope = quotient(&local.slope, pair, &local.change);
-        (slope.re.is_finite() && slope.im.is_finite()).then_some(slope)
+    /// Roots near the axis of one speed together.
+    fn tangents(&self, tracks: &[Track]) -> Vec<Vec<Option<f64>>> {
+        let mut tangents: Vec<Vec<Option<f64>>> = tracks
+            .iter()
+            .map(|track| vec![None; track.roots.len()])
+            .collect();
+        let mut stations: Vec<Vec<(usize, usize)>> =
+            vec![Vec::new(); self.sweep.schedule.count()];
+        for (number, track) in tracks.iter().enumerate() {
+            for (at, root) in track.roots.iter().enumerate() {
+                if root.p.re.abs() < NEAR_AXIS && root.p.im > 0.0 {
+                    stations[track.first + at].push((number, at));
+                }
+            }
+        }
+        if stations.len() < 2 {
+            return tangents;
+        }
+        let solved: Vec<Vec<Option<f64>>> = stations
+            .par_iter()
+            .enumerate()
+            .map(|(station, places)| {
+                let pairs: Vec<&Eigenpair> = places
+                    .iter()
+                    .map(|(track, at)| &tracks[*track].roots[*at])
+                    .collect();
+                self.tangents_at(station, &pairs)
+            })
+            .collect();
+        for (places, solved) in stations.iter().zip(solved) {
+            for ((track, at), tangent) in places.iter().zip(solved) {
+                tangents[*track][*at] = tangent;
+            }
+        }
+        tangents
     }
 
     fn sensitivities(&self, parameter: f64, pair: &Eigenpair) -> Vec<Sensitivity> {
@@ -104,6 +138,30 @@ impl Resolver for PolishedResolver<'_> {
         self.sweep.parameters.iter().map(each).collect()
     }
 }
+
+impl PolishedResolver<'_> {
+    /// $\operatorname{Re}p_t$ of roots at one speed. Because $Tx = 0$ gives
+    /// $Q(p)x$, no force is evaluated for $T_tx$.
+    fn tangents_at(&self, station: usize, pairs: &[&Eigenpair]) -> Vec<Option<f64>> {
+        let here = reduced_at(self.sweep, station as f64);
+        let is_last = station + 1 == self.sweep.schedule.count();
+        let step = if is_last { -TANGENT_STEP } else { TANGENT_STEP };
+        let beside = reduced_at(self.sweep, station as f64 + step);
+        let points: Vec<c64> = pairs.iter().map(|pair| pair.p).collect();
+        let mut tangents = vec![None; pairs.len()];
+        Pencil::new(&here, self.smooth).each_operator_and_slope(&points, |number, _, slope| {
+            let pair = pairs[number];
+            let change = here.change_to(&beside, pair);
+            let slope = inner(&pair.left, &apply(slope.as_ref(), &pair.right));
+            let tangent = -(change / slope).re / step;
+            tangents[number] = tangent.is_finite().then_some(tangent);
+        });
+        tangents
+    }
+}
+
+/// Part of a step of the sweep for a tangent.
+const TANGENT_STEP: f64 = 1e-4;
 
 /// Airspeed at a place of the sweep and its change per step.
 fn airspeed_and_change(sweep: &Sweep<'_>, parameter: f64) -> [f64; 2] {

@@ -12,6 +12,10 @@ use std::ops::Range;
 
 use faer::{Mat, c64};
 
+use crate::eigenpair::Eigenpair;
+use crate::lane_lu::{LaneMatrices, WIDTH};
+use crate::pencil::Place;
+
 /// Air and speed at one point of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OperatingPoint {
@@ -247,6 +251,21 @@ impl Reduced {
         }
     }
 
+    /// The same in every lane, rows and columns in the order and scale given.
+    pub(crate) fn add_hysteresis_to_lanes(&self, lanes: &mut LaneMatrices, places: &[Place]) {
+        let Some(factors) = &self.hysteretic else {
+            return;
+        };
+        let order = self.order();
+        for (place, Place { mode, scale }) in places.iter().enumerate() {
+            let at = place * (order + 1) * WIDTH;
+            let added = factors[*mode] * self.stiffness[(*mode, *mode)] * scale * scale;
+            lanes.im[at..at + WIDTH]
+                .iter_mut()
+                .for_each(|value| *value += added);
+        }
+    }
+
     /// $K$ with or without hysteretic damping.
     pub(crate) fn stiffness(&self, hysteresis: Hysteresis) -> Mat<c64> {
         let order = self.order();
@@ -289,6 +308,29 @@ impl Reduced {
         Mat::from_fn(self.order(), self.order(), |i, j| {
             p * 2.0 * self.mass[(i, j)] + self.damping[(i, j)] - loads[(i, j)]
         })
+    }
+
+    /// $y^H(T_2 - T_1)x$ at a root of this problem, where the other differs in
+    /// its matrices and in $q_\infty$ but not in $Q(p)$: with
+    /// $q_1Qx = (\tilde M_1p^2 + \tilde C_1p + K_1)x$ it is
+    /// $y^H(S_2 - S_1q_2/q_1)x$ of the structural parts.
+    pub(crate) fn change_to(&self, other: &Self, pair: &Eigenpair) -> c64 {
+        let hysteresis = Self::hysteresis_at(pair.p);
+        let form = |reduced: &Self| {
+            let stiffness = reduced.stiffness(hysteresis);
+            let square = pair.p * pair.p;
+            let mut sum = c64::new(0.0, 0.0);
+            for (j, x) in pair.right.iter().enumerate() {
+                for (i, y) in pair.left.iter().enumerate() {
+                    let entry = square * reduced.mass[(i, j)]
+                        + pair.p * reduced.damping[(i, j)]
+                        + stiffness[(i, j)];
+                    sum += y.conj() * entry * x;
+                }
+            }
+            sum
+        };
+        form(other) - form(self) * (other.pressure / self.pressure)
     }
 
     /// Share of every mode in the kinetic energy of a motion,

@@ -451,13 +451,15 @@ impl Run<'_> {
 }
 
 fn crossings(tracks: &[Track], resolver: &dyn Resolver) -> Vec<Found> {
+    let tangents = resolver.tangents(tracks);
     tracks
         .par_iter()
+        .zip(&tangents)
         .enumerate()
-        .flat_map_iter(|(number, track)| {
+        .flat_map_iter(|(number, (track, tangents))| {
             let mut brackets = sign_changes(number, track);
             brackets.extend(before_the_start(number, track, resolver));
-            brackets.extend(hidden_crossings(number, track, resolver));
+            brackets.extend(hidden_crossings(number, track, tangents, resolver));
             brackets
                 .into_iter()
                 .filter_map(|bracket| locate(&bracket, resolver))

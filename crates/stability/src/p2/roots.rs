@@ -131,6 +131,22 @@ pub(crate) fn low_candidates(
     candidates_where(fit, reduced, tolerance, |cell| cell.is_mirrored)
 }
 
+/// Number of modes that meet no force at rest: zero roots whose vectors are
+/// known.
+pub(crate) fn free_modes(fit: &PiecewiseQuadratic, reduced: &Reduced) -> usize {
+    let home = fit.cell_at(c64::new(0.0, 0.0));
+    let at_rest = reduced.loads(&home.coefficients[0]);
+    let stiffness = reduced.stiffness(hysteresis_of(home));
+    let order = reduced.order();
+    let is_free =
+        |mode: &usize| (0..order).all(|row| stiffness[(row, *mode)] == at_rest[(row, *mode)]);
+    if home.is_mirrored {
+        (0..order).filter(is_free).count()
+    } else {
+        0
+    }
+}
+
 /// Candidates of one cell that are not zero.
 pub(crate) fn candidates_of(
     cell: &Cell,
