@@ -39,14 +39,14 @@ const STEADY: Goals = Goals {
 
 /// Cells of the fine steady wings, of which there are 28.
 const STEADY_WING: Cells = Cells {
-    chord: 72,
-    half_span: 28,
+    chord: 48,
+    half_span: 20,
 };
 
 /// Cells of the fine oscillating wings.
 const WING: Cells = Cells {
-    chord: 64,
-    half_span: 24,
+    chord: 48,
+    half_span: 20,
 };
 
 impl Part {
