@@ -5,6 +5,7 @@
 //! |---|---|
 //! | [`bodies`] | row sums, added masses of sphere and ellipsoids |
 //! | [`stream`] | Kirchhoff's equations: ellipsoids in a stream, free ellipsoids |
+//! | [`surface_velocity`] | steady velocity on ellipsoids |
 //! | [`wings`] | lift slopes of plates, thick wings, Kutta and Joukowski |
 //! | [`section`] | Theodorsen's function at complex p |
 //! | [`plate`] | lattices: rectangular plate in the Laplace plane, swept tapered plate |
@@ -25,4 +26,5 @@ pub mod row;
 pub mod section;
 pub mod smooth;
 pub mod stream;
+pub mod surface_velocity;
 pub mod wings;

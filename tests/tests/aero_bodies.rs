@@ -1,7 +1,7 @@
 //! Closed bodies without a wake, on small meshes.
 
 use fladder_tests::row::report;
-use fladder_tests::{bodies, stream};
+use fladder_tests::{bodies, stream, surface_velocity};
 
 #[test]
 fn row_sums_of_the_double_layer_are_minus_one_half() {
@@ -28,4 +28,12 @@ fn ellipsoids_in_a_stream_obey_kirchhoff() {
 fn free_ellipsoids_have_their_roots() {
     let rows = stream::free_roots(8, 0.02).expect("solved");
     assert!(report(&rows));
+}
+
+#[test]
+fn ellipsoids_have_their_surface_velocity() {
+    for name in ["sphere", "triaxial_2_1_0.5"] {
+        let rows = surface_velocity::rows(name, 8, 0.04).expect("solved");
+        assert!(report(&rows));
+    }
 }

@@ -101,6 +101,9 @@ fn a_run_leaves_a_report_and_the_second_is_the_same_from_the_cache() {
     ];
     let read = |folder: &str| names.map(|name| place.read(&format!("{folder}/{name}")));
     let cold = read("results/wing");
+    // The page tells how long it took, so it is not the same twice.
+    let page = place.read("results/wing/report.html");
+    assert!(page.contains("flutter at") && page.ends_with("</html>\n"));
     let second = place
         .run(&["run", "wing.toml", "--out", "again", "--threads", "1"])
         .code(0);

@@ -7,7 +7,7 @@ use fladder_tests::plate::{Planform, Plate};
 use fladder_tests::row::Row;
 use fladder_tests::section::LongWing;
 use fladder_tests::wings::{Cells, Goals, Kind};
-use fladder_tests::{bodies, laplace, section, stream, wings};
+use fladder_tests::{bodies, laplace, section, stream, surface_velocity, wings};
 
 /// A part of the validation that can be run by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -39,14 +39,14 @@ const STEADY: Goals = Goals {
 
 /// Cells of the fine steady wings, of which there are 28.
 const STEADY_WING: Cells = Cells {
-    chord: 72,
-    half_span: 28,
+    chord: 48,
+    half_span: 20,
 };
 
 /// Cells of the fine oscillating wings.
 const WING: Cells = Cells {
-    chord: 64,
-    half_span: 24,
+    chord: 48,
+    half_span: 20,
 };
 
 impl Part {
@@ -130,6 +130,9 @@ impl Part {
             Self::Stream => {
                 rows.extend(stream::munk(&[8, 16], 3, 0.02)?);
                 rows.extend(stream::free_roots(16, 0.02)?);
+                for name in ["sphere", "spheroid_4to1", "triaxial_2_1_0.5"] {
+                    rows.extend(surface_velocity::rows(name, 16, 0.01)?);
+                }
             }
             Self::Wings => {
                 rows.extend(wings::plates(STEADY_WING, |_| true, STEADY)?);

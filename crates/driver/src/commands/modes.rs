@@ -88,8 +88,8 @@ fn of_case(session: &Session, path: &Path, wanted: &Wanted<'_>) -> Result<(), Fa
         let picture =
             report::surface_picture(&aircraft).map_err(|error| not_drawn(folder, &error))?;
         session.write(&folder.join("surface_modes.vtu"), picture)?;
-        for (name, picture) in report::mode_pictures(&aircraft) {
-            session.write(&folder.join(name), picture)?;
+        for report::Named { name, picture } in report::mode_pictures(&aircraft) {
+            session.write(&folder.join(report::picture_file(&name)), picture)?;
         }
     }
     write_json(session, wanted, &summary)

@@ -19,26 +19,32 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
     let speeds = sweeping::speeds(&file)?;
     let density = sweeping::density(&file)?;
     let out = session.results_folder(&file);
+    let mut aircraft = None;
+    let mut modes = Vec::new();
+    let mut facts = vec![("case".to_owned(), path.display().to_string())];
     let (structure, forces) = if forces::are_given(&file) {
         let structure = StructureData::read(&file)?;
         report::structure(console, &structure, None);
         let forces = Forces::given(&file, &structure)?;
         (structure, forces)
     } else {
-        let aircraft = Aircraft::read(&file)?;
-        report::surface(console, &aircraft.surface);
-        report::structure(console, &aircraft.structure, aircraft.transfer.as_ref());
-        report::transfer(console, aircraft.transfer.as_ref());
-        for (name, picture) in report::mode_pictures(&aircraft) {
-            session.write(&out.join("modes").join(name), picture)?;
+        let read = aircraft.insert(Aircraft::read(&file)?);
+        report::surface(console, &read.surface);
+        report::structure(console, &read.structure, read.transfer.as_ref());
+        report::transfer(console, read.transfer.as_ref());
+        modes = report::mode_pictures(read);
+        for mode in &modes {
+            let name = report::picture_file(&mode.name);
+            session.write(&out.join("modes").join(name), &mode.picture)?;
         }
-        let own = own_forces::obtain(&file, &aircraft, &session.open_cache(&file), console)?;
-        report::own_forces(console, &file, &aircraft, &own);
-        session.derivatives(&file, &aircraft, &own, Some(&out))?;
-        let assembled = forces::assemble(&file, &aircraft, own)?;
+        let own = own_forces::obtain(&file, read, &session.open_cache(&file), console)?;
+        report::own_forces(console, &file, read, &own);
+        facts.extend(report::facts(read, &own));
+        session.derivatives(&file, read, &own, Some(&out))?;
+        let assembled = forces::assemble(&file, read, own)?;
         session.write_json(&out.join("gaf.json"), &assembled.document)?;
-        let forces = Forces::own(&file, &aircraft, &assembled.own, &assembled.document)?;
-        (aircraft.structure, forces)
+        let forces = Forces::own(&file, read, &assembled.own, &assembled.document)?;
+        (read.structure.clone(), forces)
     };
     console.notes(&forces.notes);
     let result = sweeping::run(&file, &structure, &forces, method, console)?;
@@ -56,8 +62,29 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
         conditions: &conditions,
         methods: &result.methods,
     };
-    write("root_locus.svg", plot::root_locus(&subject))?;
-    write("vgf.svg", plot::flutter_diagram(&subject))?;
+    let diagrams = [
+        ("Root locus", "root_locus.svg", plot::root_locus(&subject)),
+        ("V-g-f diagram", "vgf.svg", plot::flutter_diagram(&subject)),
+    ]
+    .map(|(name, file, picture)| (file, report::Named::new(name, picture)));
+    for (file, diagram) in &diagrams {
+        write(file, diagram.picture.clone())?;
+    }
+    let flutter = report::best(&result.methods).map_or(&[][..], |best| &best.flutter);
+    let flutter_modes = aircraft.as_ref().map_or_else(Vec::new, |aircraft| {
+        report::flutter_pictures(aircraft, flutter)
+    });
+    let page = report::page(&report::Page {
+        title,
+        conditions: &conditions,
+        methods: &result.methods,
+        speeds: &speeds,
+        diagrams: &diagrams.map(|(_, diagram)| diagram),
+        flutter_modes: &flutter_modes,
+        modes: &modes,
+        facts: &facts,
+    });
+    write("report.html", page)?;
     report::roots(console, &result.methods, &speeds);
     Ok(())
 }

@@ -11,6 +11,8 @@ mod root_locus;
 mod style;
 mod svg;
 
+pub(crate) use svg::escape;
+
 pub use flutter_diagram::flutter_diagram;
 pub use mode_shape::{ModePicture, mode_shape};
 pub use root_locus::root_locus;

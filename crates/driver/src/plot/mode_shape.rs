@@ -39,7 +39,7 @@ const SHARP: f64 = 0.6;
 
 /// Triangles above which corners are put on a coarser raster, so that small ones
 /// vanish: a picture for the eye needs no more.
-const MOST_TRIANGLES: usize = 7000;
+const MOST_TRIANGLES: usize = 3500;
 
 /// Steps of colour on each side, and of shade.
 const COLOURS: f64 = 10.0;

@@ -44,6 +44,36 @@ pub(crate) fn own_forces(
     steady_loads(console, file, aircraft, &solution.steady);
 }
 
+/// Mesh, key of the forces and effort, by name.
+pub(crate) fn facts(aircraft: &Aircraft, forces: &OwnForces) -> Vec<(String, String)> {
+    let sizes = &forces.stored.solution.sizes;
+    let effort = match &forces.origin {
+        Origin::Cache => "forces from the cache".to_owned(),
+        Origin::Computed(effort) => {
+            format!(
+                "{:.1} s: {}",
+                effort.total().as_secs_f64(),
+                in_words(effort)
+            )
+        }
+    };
+    [
+        (
+            "surface",
+            format!(
+                "{} triangles, {} unknowns, {} wake elements",
+                aircraft.surface.mesh.triangles.len(),
+                sizes.unknowns,
+                sizes.wake_elements
+            ),
+        ),
+        ("hash of all inputs of the forces", forces.key.to_hex()),
+        ("effort", effort),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .to_vec()
+}
+
 /// Time of every stage, and the most memory.
 fn in_words(effort: &Effort) -> String {
     let mut parts: Vec<String> = effort

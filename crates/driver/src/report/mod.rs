@@ -5,6 +5,7 @@ mod date;
 mod derivatives;
 mod forces;
 mod mode_pictures;
+mod page;
 mod pictures;
 mod roots;
 mod structure;
@@ -14,10 +15,14 @@ mod wake;
 pub(crate) use csv::roots_csv;
 pub(crate) use date::utc;
 pub(crate) use derivatives::{derivatives, derivatives_csv, document as derivatives_document};
-pub(crate) use forces::{own_forces, sample, steady_forces, wake_jumps};
-pub(crate) use mode_pictures::{Shown, mode_pictures, structure_picture, surface_picture};
+pub(crate) use forces::{facts, own_forces, sample, steady_forces, wake_jumps};
+pub(crate) use mode_pictures::{
+    Named, Shown, flutter_pictures, mode_pictures, picture_file, structure_picture,
+    surface_picture,
+};
+pub(crate) use page::{Page, page};
 pub(crate) use pictures::{EdgeEnd, ends, flow_pictures, pictures};
-pub(crate) use roots::{conditions, roots};
+pub(crate) use roots::{best, conditions, roots};
 pub(crate) use structure::{modes_of_case, modes_summary, structure, transfer};
 pub(crate) use surface::surface;
 pub(crate) use wake::wake;

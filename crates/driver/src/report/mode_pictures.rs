@@ -2,12 +2,30 @@
 
 use crate::chain::aircraft::Aircraft;
 use crate::plot::{ModePicture, mode_shape};
+use faer::c64;
 use fladder_mesh::vtu::{Field, Grid, vtu};
+use fladder_mesh::{SurfaceMode, Vec3};
 use fladder_modal::{ModalResult, StructuralModel};
+use fladder_stability::Crossing;
 
-/// Name and picture of every mode on the surface that the case asks for, but for
-/// rigid ones.
-pub(crate) fn mode_pictures(aircraft: &Aircraft) -> Vec<(String, String)> {
+/// A picture and what it is called.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Named {
+    pub(crate) name: String,
+    pub(crate) picture: String,
+}
+
+impl Named {
+    pub(crate) fn new(name: impl Into<String>, picture: String) -> Self {
+        Self {
+            name: name.into(),
+            picture,
+        }
+    }
+}
+
+/// Every mode on the surface that the case asks for, but for rigid ones.
+pub(crate) fn mode_pictures(aircraft: &Aircraft) -> Vec<Named> {
     let frequency = |name: &str| {
         let mut elastic = aircraft
             .structure
@@ -31,9 +49,79 @@ pub(crate) fn mode_pictures(aircraft: &Aircraft) -> Vec<(String, String)> {
                 mesh: &aircraft.surface.mesh,
                 displacement: &mode.displacement,
             })?;
-            Some((format!("{}.svg", file_name(&mode.name)), picture))
+            Some(Named {
+                name: mode.name.clone(),
+                picture,
+            })
         })
         .collect()
+}
+
+/// Crossings shown a quarter of a period later too: pictures make up most of a page.
+const TWICE: usize = 2;
+
+/// What moves at every crossing of the axis: the surface when the largest displacement is
+/// reached, and for the first ones a quarter of a period later.
+///
+/// u(t) = Re [Σ_j x_j u_j e^{iωt}], x the eigenvector with its phase such that the largest
+/// displacement is real.
+pub(crate) fn flutter_pictures(aircraft: &Aircraft, crossings: &[Crossing]) -> Vec<Named> {
+    let modes = aircraft.asked_modes();
+    let mesh = &aircraft.surface.mesh;
+    let mut pictures = Vec::new();
+    let complete = crossings.iter().filter(|c| c.shape.len() <= modes.len());
+    for (number, crossing) in complete.enumerate() {
+        let part = |turn: c64| -> Vec<Vec3> {
+            (0..mesh.vertices.len())
+                .map(|v| {
+                    let of_mode =
+                        |(x, mode): (&c64, &SurfaceMode)| mode.displacement[v] * (x * turn).re;
+                    crossing.shape.iter().zip(modes).map(of_mode).sum()
+                })
+                .collect()
+        };
+        let one = c64::new(1.0, 0.0);
+        let quarter = c64::new(0.0, 1.0);
+        let (real, imaginary) = (part(one), part(-quarter));
+        let phase = real
+            .iter()
+            .zip(&imaginary)
+            .max_by(|a, b| size(a).total_cmp(&size(b)))
+            .map_or(0.0, |(re, im)| turned(re, im));
+        let aligned = c64::from_polar(1.0, -phase);
+        let phases = [
+            ("", aligned),
+            (", a quarter of a period later", aligned * quarter),
+        ];
+        let count = if number < TWICE { 2 } else { 1 };
+        for (when, turn) in phases.into_iter().take(count) {
+            let name = format!(
+                "{} at {:.2} m/s, {:.2} Hz{when}",
+                crossing.branch, crossing.speed, crossing.frequency_hz
+            );
+            let picture = mode_shape(&ModePicture {
+                title: &name,
+                mesh,
+                displacement: &part(turn),
+            });
+            pictures.extend(picture.map(|picture| Named { name, picture }));
+        }
+    }
+    pictures
+}
+
+fn size((re, im): &(&Vec3, &Vec3)) -> f64 {
+    re.norm_squared() + im.norm_squared()
+}
+
+/// Phase at which Re[(a + ib) e^{−iφ}] is longest: tan 2φ = 2 a·b/(a² − b²).
+fn turned(re: &Vec3, im: &Vec3) -> f64 {
+    0.5 * (2.0 * re.dot(im)).atan2(re.norm_squared() - im.norm_squared())
+}
+
+/// Name of the file of a mode's picture.
+pub(crate) fn picture_file(name: &str) -> String {
+    format!("{}.svg", file_name(name))
 }
 
 /// Letters, digits, points, hyphens and underscores of a name, all else as `_`.

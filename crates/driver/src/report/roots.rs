@@ -30,38 +30,72 @@ pub(crate) fn conditions(file: &CaseFile, speeds: &[f64], density: f64) -> Strin
     )
 }
 
-/// Crossings, agreement of the methods, rigid roots, and the verdict.
-pub(crate) fn roots(console: &Console, methods: &Methods, speeds: &[f64]) {
-    let best = methods
+/// The most accurate result there is.
+pub(crate) fn best(methods: &Methods) -> Option<&MethodResult> {
+    methods
         .polished
         .as_ref()
         .or(methods.p2.as_ref())
-        .or(methods.pk.as_ref());
-    let (Some(best), [first, .., last] | [first @ last]) = (best, speeds) else {
+        .or(methods.pk.as_ref())
+}
+
+/// Crossings, agreement of the methods, rigid roots, and the verdict.
+pub(crate) fn roots(console: &Console, methods: &Methods, speeds: &[f64]) {
+    let Some(best) = best(methods) else {
         return;
     };
-    crossings(console, methods, best);
+    let (head, rows) = crossing_table(methods);
+    if !rows.is_empty() {
+        let aligned = |(i, name): (usize, &String)| {
+            let align = if i < 3 { Align::Left } else { Align::Right };
+            (name.clone(), align)
+        };
+        let columns: Vec<(String, Align)> = head.iter().enumerate().map(aligned).collect();
+        let columns: Vec<(&str, Align)> = columns
+            .iter()
+            .map(|(name, align)| (name.as_str(), *align))
+            .collect();
+        let mut table = Table::new(&columns);
+        for row in rows {
+            table.row(row);
+        }
+        console.say(table.text());
+    }
     rigid_roots(console, best);
     completeness(console, best);
     console.say("");
-    for line in verdict(best, *first, *last) {
+    for line in verdicts(methods, speeds) {
         console.say(line);
     }
 }
 
-fn crossings(console: &Console, methods: &Methods, best: &MethodResult) {
-    let mut table = Table::new(&[
-        ("crossing", Align::Left),
-        ("branch", Align::Left),
-        ("kind", Align::Left),
-        ("V [m/s]", Align::Right),
-        ("q [Pa]", Align::Right),
-        ("f [Hz]", Align::Right),
-        ("k", Align::Right),
-        ("p2 V [m/s]", Align::Right),
-        ("p-k V [m/s]", Align::Right),
-        ("p-k to p2", Align::Right),
-    ]);
+/// The verdict in words, most urgent first.
+pub(crate) fn verdicts(methods: &Methods, speeds: &[f64]) -> Vec<String> {
+    match (best(methods), speeds) {
+        (Some(best), [first, .., last] | [first @ last]) => verdict(best, *first, *last),
+        _ => Vec::new(),
+    }
+}
+
+/// Names of the columns, and a row a crossing: the first three are words.
+pub(crate) fn crossing_table(methods: &Methods) -> (Vec<String>, Vec<Vec<String>>) {
+    let head = [
+        "crossing",
+        "branch",
+        "kind",
+        "V [m/s]",
+        "q [Pa]",
+        "f [Hz]",
+        "k",
+        "p2 V [m/s]",
+        "p-k V [m/s]",
+        "p-k to p2",
+    ];
+    let head = head.map(str::to_owned).to_vec();
+    let mut rows = Vec::new();
+    let Some(best) = best(methods) else {
+        return (head, rows);
+    };
     let beside = |result: &Option<MethodResult>, crossing: &Crossing, back: bool| {
         let result = result.as_ref()?;
         let list = if back {
@@ -80,7 +114,7 @@ fn crossings(console: &Console, methods: &Methods, best: &MethodResult) {
             || "–".to_owned(),
             |(p2, pk)| format!("{:+.3} %", 100.0 * (pk - p2) / p2),
         );
-        table.row([
+        rows.push(vec![
             word.to_owned(),
             crossing.branch.clone(),
             kind(crossing.kind).to_owned(),
@@ -100,7 +134,7 @@ fn crossings(console: &Console, methods: &Methods, best: &MethodResult) {
         .iter()
         .for_each(|crossing| add("stable again", crossing, true));
     for divergence in &best.divergence {
-        table.row([
+        rows.push(vec![
             "divergence".to_owned(),
             divergence.branch.clone(),
             kind(divergence.kind).to_owned(),
@@ -108,9 +142,7 @@ fn crossings(console: &Console, methods: &Methods, best: &MethodResult) {
             format!("{:.1}", divergence.dynamic_pressure),
         ]);
     }
-    if !table.is_empty() {
-        console.say(table.text());
-    }
+    (head, rows)
 }
 
 /// Speed of the crossing of another method that is the same one.
@@ -201,7 +233,7 @@ fn completeness(console: &Console, best: &MethodResult) {
 
 /// Sentences that say what the sweep means.
 fn verdict(best: &MethodResult, first: f64, last: f64) -> Vec<String> {
-    let mut lines = Vec::new();
+    let mut lines: Vec<(f64, String)> = Vec::new();
     for start in &best.unstable_at_start {
         let motion = if start.k > 0.0 {
             "oscillation"
@@ -213,27 +245,29 @@ fn verdict(best: &MethodResult, first: f64, last: f64) -> Vec<String> {
         } else {
             "already at the first speed,"
         };
-        lines.push(format!(
+        let line = format!(
             "unstable {since} {} m/s: branch {} ({}), {motion}, g {:+.5}, k {:.4}",
             three_digits(start.speed),
             start.branch,
             kind(start.kind),
             start.g,
             start.k
-        ));
+        );
+        lines.push((start.speed, line));
     }
     for crossing in &best.flutter {
         let word = match crossing.kind {
             Kind::Elastic => "flutter",
             Kind::Rigid => "a rigid motion becomes unstable",
         };
-        lines.push(format!(
+        let line = format!(
             "{word} at {} m/s, {} Hz, k {:.2}, branch {}",
             three_digits(crossing.speed),
             three_digits(crossing.frequency_hz),
             crossing.k,
             crossing.branch
-        ));
+        );
+        lines.push((crossing.speed, line));
     }
     for divergence in &best.divergence {
         let word = match divergence.kind {
@@ -241,15 +275,14 @@ fn verdict(best: &MethodResult, first: f64, last: f64) -> Vec<String> {
             Kind::Rigid => "a rigid motion becomes aperiodically unstable",
         };
         let speed = three_digits(divergence.speed);
-        lines.push(format!(
-            "{word} at {speed} m/s, branch {}",
-            divergence.branch
-        ));
+        let line = format!("{word} at {speed} m/s, branch {}", divergence.branch);
+        lines.push((divergence.speed, line));
     }
     if lines.is_empty() {
-        lines.push(format!("stable from {first:.1} to {last:.1} m/s"));
+        lines.push((first, format!("stable from {first:.1} to {last:.1} m/s")));
     }
-    lines
+    lines.sort_by(|a, b| a.0.total_cmp(&b.0));
+    lines.into_iter().map(|(_, line)| line).collect()
 }
 
 #[cfg(test)]
