@@ -188,7 +188,10 @@ impl Way {
     }
 
     fn finish(self) -> Option<Root> {
-        if self.state != State::Found || (self.p - self.seed).norm() > LONGEST_WAY {
+        // On the branch cut the slope is one side's and steps shrink by a constant only.
+        let is_close = self.state == State::Running && self.last_step < ACCEPTABLE;
+        let has_arrived = self.state == State::Found || is_close;
+        if !has_arrived || (self.p - self.seed).norm() > LONGEST_WAY {
             return None;
         }
         let has_left = self.seed.im > 0.0 && self.p.im < REAL_ROOT;
