@@ -116,19 +116,28 @@ fn main() {
             refined.push(result);
         }
     }
-    let [full, followed] = refined.as_slice() else {
-        return;
-    };
+    if let [full, followed] = refined.as_slice() {
+        compare(&points, &times, full, followed);
+    }
+}
+
+/// Ratios to the continuation, and its roots held against those of the search in every cell.
+fn compare(
+    points: &[OperatingPoint],
+    times: &[(&str, f64)],
+    full: &MethodResult,
+    followed: &MethodResult,
+) {
     let fast = times
         .iter()
         .find(|(name, _)| name.contains("continuation"))
         .unwrap()
         .1;
-    for (name, seconds) in &times {
+    for (name, seconds) in times {
         println!("  {name:24} {:5.1} times the continuation", seconds / fast);
     }
     let complete = followed.complete.as_ref().unwrap();
-    let difference = largest_difference(&points, followed, full);
+    let difference = largest_difference(points, followed, full);
     println!(
         "  count met at {} speeds; largest difference of roots {difference:.1e}",
         complete.iter().filter(|met| **met).count(),

@@ -80,7 +80,7 @@ impl Continuation<'_> {
             .collect();
         let seeded: Vec<(RefinedRoots, List)> = chunks
             .par_iter()
-            .map(|&(first, end)| self.from_all_cells(first.midpoint(end), &claim))
+            .map(|&(first, end)| self.search_all_cells(first.midpoint(end), &claim))
             .collect::<Result<_, _>>()?;
         let arms: Vec<(usize, Vec<usize>)> = chunks
             .iter()
@@ -118,14 +118,14 @@ impl Continuation<'_> {
         Ok(places.into_iter().collect())
     }
 
-    fn from_all_cells(
+    fn search_all_cells(
         &self,
         speed: usize,
         claim: &Claim,
     ) -> Result<(RefinedRoots, List), Fault> {
         let pencil = Pencil::new(&self.reduced[speed], self.smooth);
         let search = self.search(&pencil, claim);
-        let (list, found) = search.from_all_cells().map_err(|error| (speed, error))?;
+        let (list, found) = search.search_all_cells().map_err(|error| (speed, error))?;
         Ok((search.finish(&list, &found), list))
     }
 
@@ -169,7 +169,7 @@ impl Continuation<'_> {
             if list.is_complete() {
                 solved.push(search.finish(&list, &low));
             } else {
-                let (all, found) = search.from_all_cells().map_err(fault)?;
+                let (all, found) = search.search_all_cells().map_err(fault)?;
                 solved.push(search.finish(&all, &found));
                 list = all;
             }

@@ -204,10 +204,14 @@ impl Way {
         }
         if p.im < 0.0 {
             p = p.conj();
-            x.iter_mut().for_each(|value| *value = value.conj());
+            for value in &mut x {
+                *value = value.conj();
+            }
         }
         let scale = turned_to_unit(&x);
-        x.iter_mut().for_each(|value| *value *= scale);
+        for value in &mut x {
+            *value *= scale;
+        }
         Some(Root {
             p,
             vector: x,

@@ -29,7 +29,7 @@ pub(crate) struct RefinedRoots {
 
 impl Search<'_> {
     /// The list from the candidates of every cell, and the candidates.
-    pub(crate) fn from_all_cells(&self) -> Result<(List, Vec<Candidate>), NoConvergence> {
+    pub(crate) fn search_all_cells(&self) -> Result<(List, Vec<Candidate>), NoConvergence> {
         let (found, zeros) = candidates(self.fit, self.pencil.reduced, SEED_TOLERANCE)?;
         let clear = found
             .iter()

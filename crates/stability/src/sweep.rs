@@ -342,7 +342,7 @@ impl Run<'_> {
         let sweep = self.sweep;
         let solved = match sweep.search {
             Search::Continuation => self.continued(smooth)?,
-            Search::EverySpeed => self.from_all_cells(smooth)?,
+            Search::EverySpeed => self.search_all_cells(smooth)?,
         };
         let complete = solved.iter().map(|speed| speed.is_complete).collect();
         let count = solved.iter().map(|speed| speed.count).collect();
@@ -378,7 +378,7 @@ impl Run<'_> {
             .ok_or(SweepError::Cancelled)
     }
 
-    fn from_all_cells(
+    fn search_all_cells(
         &self,
         smooth: &dyn Aerodynamics,
     ) -> Result<Vec<RefinedRoots>, SweepError> {
@@ -391,7 +391,7 @@ impl Run<'_> {
                 fit,
                 claim: &claim,
             };
-            let (list, found) = search.from_all_cells()?;
+            let (list, found) = search.search_all_cells()?;
             Ok(search.finish(&list, &found))
         })
     }
