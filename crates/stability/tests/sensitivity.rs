@@ -11,7 +11,7 @@ use common::{SectionForces, Wing, range, section, speeds};
 use faer::{Mat, c64};
 use fladder_stability::{
     DampingModel, FromFunction, Method, MethodResult, OperatingPoint, Parameter,
-    PiecewiseQuadratic, RationalFit, StructuralMatrices, Structure, Sweep, System,
+    PiecewiseQuadratic, RationalFit, Schedule, StructuralMatrices, Structure, Sweep, System,
 };
 
 /// A wing with $M + \theta M_\theta$ and its like.
@@ -62,7 +62,7 @@ fn wing_parameters(wing: &Wing) -> Vec<(Parameter, f64)> {
     // Any displacement and rotation of a point will do.
     let displacement: Vec<[f64; 3]> = (0..26)
         .map(|i| {
-            let t = i as f64;
+            let t = f64::from(i);
             [
                 0.05 * (1.3 * t).cos(),
                 0.02 * (0.7 * t).sin(),
@@ -72,7 +72,13 @@ fn wing_parameters(wing: &Wing) -> Vec<(Parameter, f64)> {
         .collect();
     found.push((Parameter::point_mass("tip mass", &displacement), 1e-4));
     let rotation: Vec<f64> = (0..26)
-        .map(|i| if i < 6 { 0.0 } else { (1.7 * i as f64).sin() })
+        .map(|i| {
+            if i < 6 {
+                0.0
+            } else {
+                (1.7 * f64::from(i)).sin()
+            }
+        })
         .collect();
     found.push((Parameter::hinge("hinge", &rotation), 1e-2));
     found
@@ -80,7 +86,7 @@ fn wing_parameters(wing: &Wing) -> Vec<(Parameter, f64)> {
 
 fn polished(
     structure: &dyn Structure,
-    points: &Vec<OperatingPoint>,
+    points: &dyn Schedule,
     wing: &Wing,
     smooth: &RationalFit,
     parameters: &[Parameter],
