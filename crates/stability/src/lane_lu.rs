@@ -246,7 +246,11 @@ mod tests {
         for order in [1, 2, 5, 26] {
             let entry = |lane: usize, i: usize, j: usize| {
                 let t = (1 + lane) as f64 * (0.37 + i as f64) + 2.3 * j as f64;
-                let size = if i == j && lane % 2 == 0 { 1e-9 } else { 1.0 };
+                let size = if i == j && lane.is_multiple_of(2) {
+                    1e-9
+                } else {
+                    1.0
+                };
                 c64::new((7.1 * t).sin(), (3.3 * t * t).cos()) * size
             };
             let mut lanes = LaneMatrices::new(order);

@@ -202,7 +202,7 @@ mod tests {
                 i if i == partner => c64::new(0.3 * turn, 0.1 * turn),
                 _ => c64::new(0.0, 0.0),
             };
-            let drift = if mode % 2 == 0 { t } else { -t };
+            let drift = if mode.is_multiple_of(2) { t } else { -t };
             Eigenpair {
                 p: c64::new(-0.01 - 0.002 * own, 0.2 + 0.15 * own + 0.16 * drift),
                 right: (0..ORDER).map(vector).collect(),

@@ -13,8 +13,8 @@ use std::time::Instant;
 use common::{Wing, number, range, roots, speeds};
 use faer::{Mat, c64};
 use fladder_stability::{
-    Aerodynamics, FromFunction, Method, MethodResult, OperatingPoint, PiecewiseQuadratic,
-    RationalFit, Search, Structure, Sweep,
+    Aerodynamics, FromFunction, Method, MethodResult, PiecewiseQuadratic, RationalFit,
+    Schedule, Search, Structure, Sweep,
 };
 
 fn found_at(result: &MethodResult, number: usize) -> Vec<c64> {
@@ -39,7 +39,7 @@ fn nearest(to: c64, among: &[c64]) -> f64 {
 fn polished(
     structure: &dyn Structure,
     wing: &Wing,
-    points: &Vec<OperatingPoint>,
+    points: &dyn Schedule,
     smooth: &dyn Aerodynamics,
     search: Search,
 ) -> MethodResult {
