@@ -5,7 +5,7 @@
 //!
 //! Q(s; U) = 2 { s² P1ᵀb₁ … + Σ_a U_a (…) + Σ_ab U_a U_b (…) },
 //!
-//! so that one factorisation serves every incidence: a wake along x, or none, is given
+//! so that one factorisation serves every incidence: a wake that stays, or none, is given
 //! the onsets e_x and e_z (and e_y where there is sideslip). A wake along the free stream
 //! has one onset, the stream.
 
@@ -23,9 +23,8 @@ pub(crate) struct OnsetBasis(Vec<[f64; 3]>);
 impl OnsetBasis {
     /// The onsets of a problem.
     pub(crate) fn of(problem: &Problem<'_>) -> Self {
-        let fixed =
-            problem.wake_direction == WakeDirection::X || problem.trailing_edges.is_empty();
-        if !fixed {
+        let follows = problem.wake_direction == WakeDirection::Freestream;
+        if follows && !problem.trailing_edges.is_empty() {
             return Self::single(problem.flow.stream());
         }
         let mut axes = vec![[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];

@@ -46,6 +46,8 @@ pub enum WakeDirection {
     Freestream,
     /// Along the mesh axis x, whatever the incidence.
     X,
+    /// Along the free stream of [`Problem::flow`], and left there at other incidences.
+    Held,
 }
 
 /// A boundary-element problem at M = 0.
@@ -264,7 +266,7 @@ pub(crate) fn lay_out(
 
 fn wake_direction(problem: &Problem<'_>) -> Vec3 {
     match problem.wake_direction {
-        WakeDirection::Freestream => problem.flow.stream(),
+        WakeDirection::Freestream | WakeDirection::Held => problem.flow.stream(),
         WakeDirection::X => Vec3::x(),
     }
 }

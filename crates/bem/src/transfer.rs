@@ -129,6 +129,16 @@ impl TransferModel {
     /// # Errors
     /// As [`Self::q`], and [`LaplaceError::OtherIncidence`] where [`Self::serves`] says no.
     pub fn q_at(&self, p: c64, flow: Flow) -> Result<Mat<c64>, LaplaceError> {
+        let mut each = self.q_at_each(p, &[flow])?;
+        Ok(each.remove(0))
+    }
+
+    /// Q(p) at several incidences: the response of the wake, which is most of the work, is
+    /// evaluated once.
+    ///
+    /// # Errors
+    /// As [`Self::q_at`].
+    pub fn q_at_each(&self, p: c64, flows: &[Flow]) -> Result<Vec<Mat<c64>>, LaplaceError> {
         let (g, k) = (p.re, p.im);
         if !g.is_finite() || !k.is_finite() {
             return Err(LaplaceError::NotFinite { g, k });
@@ -136,33 +146,46 @@ impl TransferModel {
         if k == 0.0 && g < 0.0 {
             return Err(LaplaceError::BranchCut { g });
         }
-        let Some(stream) = self.basis.components(flow.stream()) else {
-            return Err(LaplaceError::OtherIncidence {
-                alpha_deg: flow.alpha.to_degrees(),
-                beta_deg: flow.beta.to_degrees(),
-            });
+        let stream = |flow: &Flow| {
+            self.basis
+                .components(flow.stream())
+                .ok_or(LaplaceError::OtherIncidence {
+                    alpha_deg: flow.alpha.to_degrees(),
+                    beta_deg: flow.beta.to_degrees(),
+                })
         };
+        let streams: Vec<Vec<f64>> = flows.iter().map(stream).collect::<Result<_, _>>()?;
         let s = c64::new(g, k.abs()) / self.semichord;
         if self.columns > 0 && !Path::keeps_digits(&self.far(s).nodes, s) {
             return Err(LaplaceError::TooDamped { g, k });
         }
-        let mut q = self
-            .evaluate(s, &stream)
-            .ok_or(LaplaceError::Singular { g, k })?;
-        for j in 0..self.modes {
-            for i in 0..self.modes {
-                if k == 0.0 {
-                    q[(i, j)].im = 0.0;
-                } else if k < 0.0 {
-                    q[(i, j)].im = -q[(i, j)].im;
+        let response = (self.columns > 0).then(|| self.wake_response(s));
+        let evaluate = |stream: &Vec<f64>| {
+            let mut q = self
+                .evaluate(s, stream, response.as_ref())
+                .ok_or(LaplaceError::Singular { g, k })?;
+            for j in 0..self.modes {
+                for i in 0..self.modes {
+                    if k == 0.0 {
+                        q[(i, j)].im = 0.0;
+                    } else if k < 0.0 {
+                        q[(i, j)].im = -q[(i, j)].im;
+                    }
                 }
             }
-        }
-        Ok(q)
+            Ok(q)
+        };
+        streams.iter().map(evaluate).collect()
     }
 
-    /// Q(s) for a stream given by its components along the onsets.
-    fn evaluate(&self, s: c64, stream: &[f64]) -> Option<Mat<c64>> {
+    /// Q(s) for a stream given by its components along the onsets and H(s), where there is
+    /// a wake.
+    fn evaluate(
+        &self,
+        s: c64,
+        stream: &[f64],
+        response: Option<&Mat<c64>>,
+    ) -> Option<Mat<c64>> {
         let (m, n) = (self.modes, self.columns);
         let once = |blocks: &[Block]| combine(blocks, stream);
         let pairs: Vec<f64> = stream
@@ -176,8 +199,7 @@ impl TransferModel {
         let mut q = Mat::from_fn(m, m, |i, j| {
             s * (s * quadratic[(i, j)] + linear[(i, j)]) + constant[(i, j)]
         });
-        if n > 0 {
-            let h = self.wake_response(s);
+        if let Some(h) = response {
             let system = Mat::from_fn(n, n, |i, j| {
                 let unit = if i == j { 1.0 } else { 0.0 };
                 unit - h[(i, j)]

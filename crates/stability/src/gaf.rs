@@ -101,6 +101,14 @@ pub enum GafError {
         /// Reduced frequency of the missing sample.
         k: f64,
     },
+    /// Tables that are to stand side by side differ.
+    #[error("table {table} has other {what} than the first")]
+    Differs {
+        /// Number of the table, from 1.
+        table: usize,
+        /// What differs.
+        what: &'static str,
+    },
     /// The steady vector has the wrong length or a value that is not finite.
     #[error("steady forces: {found} values for {modes} modes, or one of them is not finite")]
     Steady {
@@ -122,6 +130,7 @@ pub struct GafTable {
     samples: Vec<Option<Mat<c64>>>,
     steady: Vec<Option<f64>>,
     notes: Vec<String>,
+    parts: usize,
 }
 
 impl GafTable {
@@ -180,6 +189,7 @@ impl GafTable {
             k,
             g,
             notes,
+            parts: 1,
         };
         table.fill(points)?;
         table.check_holes()?;
@@ -292,6 +302,58 @@ impl GafTable {
     /// Number of modes.
     pub fn order(&self) -> usize {
         self.modes.len()
+    }
+
+    /// Number of parts side by side in every sample.
+    pub fn parts(&self) -> usize {
+        self.parts
+    }
+
+    /// Rows and columns of every sample: the modes, and those of all parts.
+    pub(crate) fn shape(&self) -> [usize; 2] {
+        [self.order(), self.order() * self.parts]
+    }
+
+    /// Several tables as the parts of one, for a
+    /// [`Mixture`](crate::Mixture). Mach number and steady forces are those of
+    /// the first.
+    ///
+    /// # Errors
+    /// [`GafError::Differs`] where a table has another grid, other modes or
+    /// another semichord than the first; [`GafError::NoAxis`] for no table.
+    pub fn side_by_side(tables: &[Self]) -> Result<Self, GafError> {
+        let Some((first, others)) = tables.split_first() else {
+            return Err(GafError::NoAxis);
+        };
+        let mut whole = first.clone();
+        for (number, other) in others.iter().enumerate() {
+            let what = [
+                ("modes", first.modes == other.modes),
+                ("k", first.k == other.k),
+                ("g", first.g == other.g),
+                ("semichord", first.semichord == other.semichord),
+            ];
+            if let Some((what, _)) = what.into_iter().find(|(_, is_same)| !is_same) {
+                let table = number + 2;
+                return Err(GafError::Differs { table, what });
+            }
+            whole.notes.extend(other.notes.iter().cloned());
+        }
+        whole.notes.sort();
+        whole.notes.dedup();
+        whole.parts = tables.len();
+        let [rows, columns] = whole.shape();
+        for (slot, sample) in whole.samples.iter_mut().enumerate() {
+            let parts: Vec<&Mat<c64>> = tables
+                .iter()
+                .filter_map(|table| table.samples[slot].as_ref())
+                .collect();
+            if parts.len() == tables.len() {
+                let entry = |i: usize, j: usize| parts[j / rows][(i, j % rows)];
+                *sample = Some(Mat::from_fn(rows, columns, entry));
+            }
+        }
+        Ok(whole)
     }
 
     /// Reduced frequencies, ascending.

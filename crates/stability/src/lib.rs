@@ -28,6 +28,7 @@ mod gaf;
 mod hump;
 mod lane_lu;
 mod linalg;
+mod mixture;
 mod p2;
 mod pencil;
 mod pk;
@@ -56,6 +57,7 @@ pub use flight::{Flight, Thrust, TrimLoads};
 pub use frame::{Frame, FrameError, to_body_frame};
 pub use gaf::{GafError, GafPoint, GafTable};
 pub use linalg::NoConvergence;
+pub use mixture::{Incidences, MachNumbers, Mixture};
 pub use p2::{
     Candidate, Cell, DEFAULT_DAMPING_LIMIT, FitError, FitReport, PiecewiseQuadratic, Region,
 };
@@ -70,4 +72,4 @@ pub use sensitivity::{Parameter, Sensitivity};
 pub use spline::AxisSpline;
 pub use structure::{FlightPath, OperatingPoint, Schedule, StructuralMatrices, Structure};
 pub use sweep::{Method, Progress, Search, Sweep, SweepError};
-pub use system::{DampingModel, System, SystemError};
+pub use system::{DampingModel, PartLoads, System, SystemError};

@@ -64,13 +64,13 @@ impl RationalFit {
     }
 
     fn combine(&self, constant: f64, weights: &[c64]) -> Mat<c64> {
-        let order = self.at_rest.nrows();
-        let mut out = Mat::from_fn(order, order, |i, j| {
+        let (rows, columns) = (self.at_rest.nrows(), self.at_rest.ncols());
+        let mut out = Mat::from_fn(rows, columns, |i, j| {
             c64::new(constant * self.at_rest[(i, j)], 0.0)
         });
         for (coefficient, weight) in self.coefficients.iter().zip(weights) {
-            for j in 0..order {
-                for i in 0..order {
+            for j in 0..columns {
+                for i in 0..rows {
                     out[(i, j)] += weight * coefficient[(i, j)];
                 }
             }

@@ -151,12 +151,25 @@ impl PolishedResolver<'_> {
         let mut tangents = vec![None; pairs.len()];
         Pencil::new(&here, self.smooth).each_operator_and_slope(&points, |number, _, slope| {
             let pair = pairs[number];
-            let change = here.change_to(&beside, pair);
+            let change = match self.sweep.mixture {
+                None => here.change_to(&beside, pair),
+                Some(_) => self.whole_change(&here, &beside, pair),
+            };
             let slope = inner(&pair.left, &apply(slope.as_ref(), &pair.right));
             let tangent = -(change / slope).re / step;
             tangents[number] = tangent.is_finite().then_some(tangent);
         });
         tangents
+    }
+
+    /// $y^H(T_2 - T_1)x$ with forces that change too.
+    fn whole_change(&self, here: &Reduced, beside: &Reduced, pair: &Eigenpair) -> c64 {
+        let q = self.smooth.q(pair.p);
+        let image = |reduced: &Reduced| {
+            let operator = reduced.operator(pair.p, &q, Reduced::hysteresis_at(pair.p));
+            inner(&pair.left, &apply(operator.as_ref(), &pair.right))
+        };
+        image(beside) - image(here)
     }
 }
 

@@ -1,6 +1,8 @@
 //! Divergence pressures placed on the sweep.
 
-use crate::divergence::static_divergence;
+use faer::Mat;
+
+use crate::divergence::{StaticDivergence, static_divergence};
 use crate::report::{kind_of, leading_mode};
 use crate::results::Divergence;
 use crate::spline::AxisForces;
@@ -11,55 +13,64 @@ use crate::sweep::{Sweep, SweepError, q_at_rest, reduced_at};
 const HALVINGS: usize = 50;
 
 /// Static divergences within the sweep, lowest speed first.
+///
+/// Where the number of divergence pressures below the sweep's own changes
+/// between two speeds, the place is found by halving.
 pub(crate) fn divergences(
     sweep: &Sweep<'_>,
     points: &[OperatingPoint],
     forces: &dyn AxisForces,
 ) -> Result<Vec<Divergence>, SweepError> {
-    let reduced = reduced_at(sweep, 0.0);
+    let at_rest = q_at_rest(forces);
     let rigid = sweep.structure.rigid_modes();
-    let found = static_divergence(&reduced.stiffness, &q_at_rest(forces), &rigid).map_err(
-        |source| SweepError::Numerical {
-            airspeed: points[0].airspeed,
-            source,
-        },
-    )?;
-    let mut listed = Vec::new();
-    for divergence in found {
-        let shares = reduced.energy_shares(&divergence.shape);
-        for step in 0..points.len().saturating_sub(1) {
-            let excess = |parameter: f64| {
-                sweep.schedule.at(parameter).dynamic_pressure() - divergence.pressure
-            };
-            let start = step as f64;
-            if (excess(start) > 0.0) == (excess(start + 1.0) > 0.0) {
-                continue;
+    let spent = |parameter: f64| -> Result<Vec<StaticDivergence>, SweepError> {
+        let reduced = reduced_at(sweep, parameter);
+        let per_pressure = 1.0 / reduced.pressure;
+        let loads = reduced.loads(&at_rest);
+        let q = Mat::from_fn(loads.nrows(), loads.ncols(), |i, j| {
+            loads[(i, j)] * per_pressure
+        });
+        let found = static_divergence(&reduced.stiffness, &q, &rigid).map_err(|source| {
+            SweepError::Numerical {
+                airspeed: sweep.schedule.at(parameter).airspeed,
+                source,
             }
-            let point = sweep
-                .schedule
-                .at(change_of_sign(&excess, start, start + 1.0));
+        })?;
+        let is_spent = |one: &StaticDivergence| one.pressure < reduced.pressure;
+        Ok(found.into_iter().filter(is_spent).collect())
+    };
+    let mut listed = Vec::new();
+    let mut before = spent(0.0)?.len();
+    for step in 0..points.len().saturating_sub(1) {
+        let start = step as f64;
+        let after = spent(start + 1.0)?.len();
+        for number in before.min(after)..before.max(after) {
+            let (mut low, mut high) = (start, start + 1.0);
+            for _ in 0..HALVINGS {
+                let middle = f64::midpoint(low, high);
+                if (spent(middle)?.len() > number) == (after > number) {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            // The side where it is spent has its shape.
+            let side = if after > number { high } else { low };
+            let Some(divergence) = spent(side)?.into_iter().nth(number) else {
+                continue;
+            };
+            let shares = reduced_at(sweep, side).energy_shares(&divergence.shape);
+            let point = sweep.schedule.at(side);
             listed.push(Divergence {
                 speed: point.airspeed,
-                dynamic_pressure: divergence.pressure,
+                dynamic_pressure: point.dynamic_pressure(),
                 branch: leading_mode(sweep.structure.modes(), &shares).to_owned(),
                 kind: kind_of(&shares, &rigid),
                 altitude: point.altitude,
             });
         }
+        before = after;
     }
     listed.sort_by(|a, b| a.speed.total_cmp(&b.speed));
     Ok(listed)
-}
-
-fn change_of_sign(function: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    let is_positive = function(high) > 0.0;
-    for _ in 0..HALVINGS {
-        let middle = f64::midpoint(low, high);
-        if (function(middle) > 0.0) == is_positive {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    f64::midpoint(low, high)
 }

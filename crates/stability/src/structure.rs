@@ -10,6 +10,7 @@
 
 use std::ops::Range;
 
+use faer::traits::ComplexField;
 use faer::{Mat, c64};
 
 use crate::eigenpair::Eigenpair;
@@ -151,14 +152,16 @@ pub struct FlightPath {
 }
 
 impl FlightPath {
-    pub(crate) fn apply(&self, q: &mut Mat<c64>) {
-        let zero = c64::new(0.0, 0.0);
+    pub(crate) fn apply<T>(&self, q: &mut Mat<T>)
+    where
+        T: ComplexField + std::ops::Mul<f64, Output = T> + Copy,
+    {
         for row in 0..q.nrows() {
-            let across = self.z.map_or(zero, |z| q[(row, z)]);
+            let across = self.z.map_or_else(T::zero_impl, |z| q[(row, z)]);
             q[(row, self.x)] = across * -self.tan_alpha;
         }
         for column in 0..q.ncols() {
-            let across = self.z.map_or(zero, |z| q[(z, column)]);
+            let across = self.z.map_or_else(T::zero_impl, |z| q[(z, column)]);
             q[(self.x, column)] = across * -self.tan_alpha;
         }
     }
@@ -184,6 +187,8 @@ pub(crate) struct Reduced {
     pub(crate) stiffness: Mat<f64>,
     hysteretic: Option<Vec<f64>>,
     flight_path: Option<FlightPath>,
+    /// Weights of the parts of a wide $Q$; `None` where it has one.
+    weights: Option<Vec<f64>>,
     /// $q_\infty$.
     pub(crate) pressure: f64,
     /// $U/b$, which turns $p$ into $s$.
@@ -209,8 +214,18 @@ impl Reduced {
             stiffness: matrices.stiffness,
             hysteretic: matrices.hysteretic,
             flight_path: matrices.flight_path,
+            weights: None,
             pressure: point.dynamic_pressure(),
             rate,
+        }
+    }
+
+    /// With a $Q$ of several parts side by side.
+    #[must_use]
+    pub(crate) fn mixed(self, weights: Vec<f64>) -> Self {
+        Self {
+            weights: Some(weights),
+            ..self
         }
     }
 
@@ -218,24 +233,37 @@ impl Reduced {
         self.mass.nrows()
     }
 
+    /// Sum of the parts of a wide matrix.
+    fn mix<T>(&self, wide: &Mat<T>) -> Mat<T>
+    where
+        T: ComplexField + std::iter::Sum + std::ops::Mul<f64, Output = T> + Copy,
+    {
+        let order = self.order();
+        match &self.weights {
+            None => wide.clone(),
+            Some(weights) => Mat::from_fn(order, order, |i, j| {
+                let parts = weights.iter().enumerate();
+                parts.map(|(a, w)| wide[(i, a * order + j)] * *w).sum()
+            }),
+        }
+    }
+
     /// $q_\infty Q$ as it enters the problem.
     pub(crate) fn loads(&self, q: &Mat<c64>) -> Mat<c64> {
-        let mut loads = q.clone();
+        let mut loads = self.mix(q);
         if let Some(path) = &self.flight_path {
             path.apply(&mut loads);
         }
-        Mat::from_fn(q.nrows(), q.ncols(), |i, j| loads[(i, j)] * self.pressure)
+        Mat::from_fn(loads.nrows(), loads.ncols(), |i, j| loads[(i, j)] * self.pressure)
     }
 
     /// $q_\infty R$ for a real part $R$ of $Q$.
     pub(crate) fn real_loads(&self, part: &Mat<f64>) -> Mat<f64> {
-        let order = self.order();
-        if self.flight_path.is_none() {
-            return Mat::from_fn(order, order, |i, j| part[(i, j)] * self.pressure);
+        let mut loads = self.mix(part);
+        if let Some(path) = &self.flight_path {
+            path.apply(&mut loads);
         }
-        let wide = Mat::from_fn(order, order, |i, j| c64::new(part[(i, j)], 0.0));
-        let loads = self.loads(&wide);
-        Mat::from_fn(order, order, |i, j| loads[(i, j)].re)
+        Mat::from_fn(loads.nrows(), loads.ncols(), |i, j| loads[(i, j)] * self.pressure)
     }
 
     /// Whether hysteretic damping is in the problem.

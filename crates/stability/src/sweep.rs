@@ -16,6 +16,7 @@ use crate::events::events;
 use crate::gaf::GafTable;
 use crate::hump::hidden_crossings;
 use crate::linalg::NoConvergence;
+use crate::mixture::Mixture;
 use crate::p2::PiecewiseQuadratic;
 use crate::pencil::Pencil;
 use crate::pk::PkForm;
@@ -83,6 +84,9 @@ pub struct Sweep<'a> {
     /// Smooth $Q(p)$ on which roots are refined; without it there is no
     /// outcome `polished`.
     pub smooth: Option<&'a dyn Aerodynamics>,
+    /// How $Q$ changes with the flight condition, where the samples have
+    /// several parts.
+    pub mixture: Option<&'a dyn Mixture>,
     /// How the refined roots are found.
     pub search: Search,
     /// Which methods run.
@@ -137,6 +141,14 @@ pub enum SweepError {
         /// Modes of the aerodynamics.
         aerodynamics: usize,
     },
+    /// The mixture has another number of parts than the samples.
+    #[error("the mixture has {weights} parts, the aerodynamic forces have {parts}")]
+    Parts {
+        /// Parts of the mixture.
+        weights: usize,
+        /// Parts of the samples.
+        parts: usize,
+    },
     /// An eigenvalue iteration failed.
     #[error("at {airspeed} m/s {source}")]
     Numerical {
@@ -167,6 +179,7 @@ impl<'a> Sweep<'a> {
             table,
             fit,
             smooth: None,
+            mixture: None,
             search: Search::default(),
             method: Method::default(),
             pk_form: PkForm::default(),
@@ -194,10 +207,7 @@ impl Sweep<'_> {
     pub fn run(&self, progress: &dyn Progress) -> Result<SweepResult, SweepError> {
         let points = self.checked_points()?;
         let semichord = self.table.semichord();
-        let reduced: Vec<Reduced> = points
-            .par_iter()
-            .map(|point| Reduced::new(self.structure, point, semichord))
-            .collect();
+        let reduced: Vec<Reduced> = points.par_iter().map(|point| self.reduced(point)).collect();
         let run = Run {
             sweep: self,
             points: &points,
@@ -255,6 +265,14 @@ impl Sweep<'_> {
         Some(self.parameters.iter().map(each).collect())
     }
 
+    fn reduced(&self, point: &OperatingPoint) -> Reduced {
+        let reduced = Reduced::new(self.structure, point, self.table.semichord());
+        match self.mixture {
+            Some(mixture) => reduced.mixed(mixture.weights(point)),
+            None => reduced,
+        }
+    }
+
     fn checked_points(&self) -> Result<Vec<OperatingPoint>, SweepError> {
         let count = self.schedule.count();
         if count == 0 {
@@ -266,6 +284,10 @@ impl Sweep<'_> {
                 structure,
                 aerodynamics,
             });
+        }
+        let (weights, parts) = (self.mixture.map_or(1, Mixture::parts), self.table.parts());
+        if weights != parts {
+            return Err(SweepError::Parts { weights, parts });
         }
         let points: Vec<OperatingPoint> = (0..count)
             .map(|number| self.schedule.at(number as f64))
@@ -470,7 +492,7 @@ fn crossings(tracks: &[Track], resolver: &dyn Resolver) -> Vec<Found> {
 /// Mass matrix of a flight condition between the points.
 pub(crate) fn reduced_at(sweep: &Sweep<'_>, parameter: f64) -> Reduced {
     let point = sweep.schedule.at(parameter);
-    Reduced::new(sweep.structure, &point, sweep.table.semichord())
+    sweep.reduced(&point)
 }
 
 /// $Q(0)$, real.

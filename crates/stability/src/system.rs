@@ -1,8 +1,11 @@
 //! Structural matrices put together from modes, mass properties and flight.
 
+use std::sync::Arc;
+
 use faer::{Mat, c64};
 
 use crate::flight::{Flight, TrimAerodynamics};
+use crate::mixture::Mixture;
 use crate::rigid::{RigidBody, RigidModes};
 use crate::sensitivity::Parameter;
 use crate::structure::{FlightPath, OperatingPoint, StructuralMatrices, Structure};
@@ -54,7 +57,7 @@ pub enum SystemError {
         mass: f64,
     },
     /// A list has another length than the modes it belongs to.
-    #[error("{name}: {found} values for {wanted} modes")]
+    #[error("{name}: {found} values where {wanted} are wanted")]
     Count {
         /// Which list.
         name: &'static str,
@@ -104,8 +107,43 @@ pub struct System {
 struct FlightSetting {
     flight: Flight,
     semichord: f64,
-    heave_slope: f64,
-    elastic: Vec<(usize, f64)>,
+    /// One for each part of $Q$.
+    loads: Vec<PartLoads>,
+    mixture: Option<Arc<dyn Mixture>>,
+}
+
+/// What the aerodynamics of one part of $Q$ tell of the trimmed state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartLoads {
+    /// $\mathrm dQ_{zz}/\mathrm dp$ at $p = 0$ of the mass-normalised mode
+    /// `rigid:z`; 0 where there is none.
+    pub heave_slope: f64,
+    /// Steady force of every mode per unit dynamic pressure, where known.
+    pub steady: Vec<Option<f64>>,
+}
+
+impl FlightSetting {
+    /// Slope and elastic forces at a flight condition; a force that one part
+    /// lacks is left out.
+    fn loads_at(&self, point: &OperatingPoint, rigid: &[usize]) -> (f64, Vec<(usize, f64)>) {
+        let weights = self
+            .mixture
+            .as_ref()
+            .map_or_else(|| vec![1.0], |mixture| mixture.weights(point));
+        let parts = || self.loads.iter().zip(&weights);
+        let slope = parts().map(|(part, weight)| part.heave_slope * weight).sum();
+        let force = |mode: usize| -> Option<f64> {
+            parts()
+                .map(|(part, weight)| Some(part.steady[mode]? * weight))
+                .sum()
+        };
+        let modes = self.loads.first().map_or(0, |part| part.steady.len());
+        let elastic = (0..modes)
+            .filter(|mode| !rigid.contains(mode))
+            .filter_map(|mode| Some((mode, force(mode)?)))
+            .collect();
+        (slope, elastic)
+    }
 }
 
 impl System {
@@ -270,35 +308,56 @@ impl System {
     /// # Errors
     /// No rigid body, or a list of the wrong length.
     pub fn with_flight(
-        mut self,
+        self,
         flight: Flight,
         semichord: f64,
         heave_slope: f64,
         steady: &[Option<f64>],
     ) -> Result<Self, SystemError> {
+        let loads = vec![PartLoads {
+            heave_slope,
+            steady: steady.to_vec(),
+        }];
+        self.with_flight_loads(flight, semichord, loads, None)
+    }
+
+    /// As [`with_flight`](Self::with_flight), with loads that change with the
+    /// flight condition as $Q$ does.
+    ///
+    /// # Errors
+    /// No rigid body, or a list of the wrong length.
+    pub fn with_flight_loads(
+        mut self,
+        flight: Flight,
+        semichord: f64,
+        loads: Vec<PartLoads>,
+        mixture: Option<Arc<dyn Mixture>>,
+    ) -> Result<Self, SystemError> {
         if self.body.is_none() {
             return Err(SystemError::FlightWithoutBody);
         }
-        if steady.len() != self.modes.len() {
-            let (found, wanted) = (steady.len(), self.modes.len());
-            return Err(SystemError::Count {
-                name: "steady forces",
-                found,
-                wanted,
-            });
-        }
-        let rigid = self.rigid_modes.numbers();
-        let elastic = steady
+        let counts = loads
             .iter()
-            .enumerate()
-            .filter(|(mode, _)| !rigid.contains(mode))
-            .filter_map(|(mode, force)| Some((mode, (*force)?)))
-            .collect();
+            .map(|part| ("steady forces", part.steady.len(), self.modes.len()))
+            .chain([(
+                "parts of the aerodynamic forces",
+                loads.len(),
+                mixture.as_ref().map_or(1, |mixture| mixture.parts()),
+            )]);
+        for (name, found, wanted) in counts {
+            if found != wanted {
+                return Err(SystemError::Count {
+                    name,
+                    found,
+                    wanted,
+                });
+            }
+        }
         self.flight = Some(FlightSetting {
             flight,
             semichord,
-            heave_slope,
-            elastic,
+            loads,
+            mixture,
         });
         Ok(self)
     }
@@ -371,10 +430,12 @@ impl Structure for System {
                 let attitude = point.alpha + flight.climb;
                 self.rigid_modes
                     .add(&body.gravity(flight.gravity, attitude), &mut stiffness);
+                let rigid = self.rigid_modes.numbers();
+                let (heave_slope, elastic) = setting.loads_at(point, &rigid);
                 let loads = TrimAerodynamics {
                     semichord: setting.semichord,
-                    heave_slope: setting.heave_slope,
-                    elastic: &setting.elastic,
+                    heave_slope,
+                    elastic: &elastic,
                 };
                 flight.add_damping(body, &self.rigid_modes, &loads, point, &mut damping);
                 flight_path = self.rigid_modes.0[0].map(|x| FlightPath {

@@ -87,10 +87,10 @@ struct Samples {
 
 impl Samples {
     fn new(table: &GafTable) -> Self {
-        let order = table.order();
+        let [rows, columns] = table.shape();
         let is_pinned = table.k()[0] == 0.0;
         let at_rest = match table.axis().next() {
-            Some(q) if is_pinned => Mat::from_fn(order, order, |i, j| q[(i, j)].re),
+            Some(q) if is_pinned => Mat::from_fn(rows, columns, |i, j| q[(i, j)].re),
             _ => extrapolated_rest(table),
         };
         let (mut points, mut matrices) = (Vec::new(), Vec::new());
@@ -104,8 +104,8 @@ impl Samples {
                 }
             }
         }
-        let values = Mat::from_fn(2 * points.len(), order * order, |row, entry| {
-            let place = (entry % order, entry / order);
+        let values = Mat::from_fn(2 * points.len(), rows * columns, |row, entry| {
+            let place = (entry % rows, entry / rows);
             let p = points[row / 2];
             let value = (matrices[row / 2][place] - at_rest[place]) / p;
             c64::new(if row % 2 == 0 { value.re } else { value.im }, 0.0)
@@ -273,7 +273,7 @@ impl Samples {
     }
 
     fn solve(&self, poles: Vec<Pole>, table: &GafTable) -> Result<RationalFit, NoConvergence> {
-        let order = table.order();
+        let [rows, columns] = table.shape();
         let all: Vec<usize> = (0..self.points.len()).collect();
         let design = self.design(&all, &poles);
         let wide = Mat::from_fn(design.nrows(), design.ncols(), |i, j| {
@@ -281,7 +281,7 @@ impl Samples {
         });
         let solved = least_squares(wide.as_ref(), self.values.as_ref())?.solution;
         let coefficients = (0..design.ncols())
-            .map(|row| Mat::from_fn(order, order, |i, j| solved[(row, j * order + i)].re))
+            .map(|row| Mat::from_fn(rows, columns, |i, j| solved[(row, j * rows + i)].re))
             .collect();
         let mut notes = Vec::new();
         if !self.is_pinned {
@@ -317,7 +317,8 @@ fn extrapolated_rest(table: &GafTable) -> Mat<f64> {
     let samples: Vec<&Mat<c64>> = table.axis().take(2).collect();
     let (first, second) = (table.k()[0], table.k()[1]);
     let weight = first * first / (second * second - first * first);
-    Mat::from_fn(table.order(), table.order(), |i, j| {
+    let [rows, columns] = table.shape();
+    Mat::from_fn(rows, columns, |i, j| {
         let (one, other) = (samples[0][(i, j)].re, samples[1][(i, j)].re);
         one - (other - one) * weight
     })

@@ -107,12 +107,12 @@ pub(super) fn fit(
     table: &GafTable,
     damping_limit: f64,
 ) -> Result<PiecewiseQuadratic, FitError> {
-    let (line, order) = (Line::new(table.k()), table.order());
+    let (line, shape) = (Line::new(table.k()), table.shape());
     let data: Vec<&Mat<c64>> = table.axis().collect();
-    let mut rhs = Mat::zeros(line.equations(), order * order);
+    let mut rhs = Mat::zeros(line.equations(), shape[0] * shape[1]);
     for (row, &(_, sample, is_mirror)) in line.samples.iter().enumerate() {
-        for entry in 0..order * order {
-            let value = data[sample][(entry % order, entry / order)];
+        for entry in 0..shape[0] * shape[1] {
+            let value = data[sample][(entry % shape[0], entry / shape[0])];
             rhs[(row, entry)] = if is_mirror { value.conj() } else { value };
         }
     }
@@ -120,7 +120,7 @@ pub(super) fn fit(
     let is_pinned = table.k()[0] == 0.0;
     let mut cells: Vec<Cell> = (0..line.cells())
         .filter(|&cell| line.edges[cell + 1] > 0.0)
-        .map(|cell| cell_of_solution(&line, cell, &solved.solution, order, damping_limit))
+        .map(|cell| cell_of_solution(&line, cell, &solved.solution, shape, damping_limit))
         .collect();
     if is_pinned {
         cells[0].coefficients[0] = data[0].clone();
@@ -145,7 +145,7 @@ pub(super) fn fit(
             residual: 0.0,
             is_pinned,
         },
-        order,
+        shape,
         notes,
     };
     fit.report.residual = misfit(&fit, table.k(), &data);
@@ -158,15 +158,15 @@ fn cell_of_solution(
     line: &Line,
     cell: usize,
     solution: &Mat<c64>,
-    order: usize,
+    [rows, columns]: [usize; 2],
     damping_limit: f64,
 ) -> Cell {
     let alpha = c64::new(0.0, -1.0 / line.half_width(cell));
     let beta = -line.centre(cell) / line.half_width(cell);
     let is_mirrored = line.edges[cell] < 0.0;
     let power = |exponent: usize| {
-        Mat::from_fn(order, order, |row, column| {
-            let local = |index: usize| solution[(3 * cell + index, column * order + row)];
+        Mat::from_fn(rows, columns, |row, column| {
+            let local = |index: usize| solution[(3 * cell + index, column * rows + row)];
             let value = match exponent {
                 0 => local(0) + local(1) * beta + local(2) * beta * beta,
                 1 => (local(1) + local(2) * 2.0 * beta) * alpha,

@@ -191,7 +191,7 @@ impl Side<'_> {
     fn cells(&self) -> Result<(Vec<Cell>, usize, usize), FitError> {
         let patches = self.patches();
         let data = self.data(&patches);
-        let fitted = fit_patches(&patches, &data, &self.joins(&patches), self.table.order())?;
+        let fitted = fit_patches(&patches, &data, &self.joins(&patches), self.table.shape())?;
         let rows = self.edges().len() - 1;
         let cells = patches
             .iter()

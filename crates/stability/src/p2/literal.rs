@@ -37,7 +37,7 @@ pub(super) fn fit(
         })
         .collect();
     let joins = joins(&patches, rows);
-    let fitted = fit_patches(&patches, &data, &joins, table.order())?;
+    let fitted = fit_patches(&patches, &data, &joins, table.shape())?;
     let cells: Vec<Cell> = patches
         .iter()
         .zip(fitted.coefficients)
@@ -67,7 +67,7 @@ pub(super) fn fit(
     Ok(PiecewiseQuadratic {
         cells,
         report,
-        order: table.order(),
+        shape: table.shape(),
         notes: Vec::new(),
     })
 }

@@ -105,7 +105,7 @@ pub enum FitError {
 pub struct PiecewiseQuadratic {
     cells: Vec<Cell>,
     report: FitReport,
-    order: usize,
+    shape: [usize; 2],
     notes: Vec<String>,
 }
 
@@ -232,13 +232,14 @@ impl Region {
 /// evaluation, not for a Newton iteration across an edge.
 impl Aerodynamics for PiecewiseQuadratic {
     fn order(&self) -> usize {
-        self.order
+        self.shape[0]
     }
 
     fn q(&self, p: c64) -> Mat<c64> {
         if p.im < 0.0 {
             let mirrored = self.cell_at(p.conj()).q(p.conj());
-            return Mat::from_fn(self.order, self.order, |i, j| mirrored[(i, j)].conj());
+            let [rows, columns] = self.shape;
+            return Mat::from_fn(rows, columns, |i, j| mirrored[(i, j)].conj());
         }
         self.cell_at(p).q(p)
     }

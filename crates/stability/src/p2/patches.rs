@@ -63,17 +63,17 @@ pub(super) fn fit_patches(
     patches: &[Patch],
     data: &[Datum<'_>],
     joins: &[Join],
-    order: usize,
+    shape: [usize; 2],
 ) -> Result<Fitted, FitError> {
     let equations = data.len() + joins.len();
     let mut design = Mat::<c64>::zeros(equations, 3 * patches.len());
-    let mut rhs = Mat::<c64>::zeros(equations, order * order);
+    let mut rhs = Mat::<c64>::zeros(equations, shape[0] * shape[1]);
     for (row, datum) in data.iter().enumerate() {
         for (power, value) in patches[datum.cell].powers(datum.p).into_iter().enumerate() {
             design[(row, 3 * datum.cell + power)] = value;
         }
-        for entry in 0..order * order {
-            let value = datum.q[(entry % order, entry / order)];
+        for entry in 0..shape[0] * shape[1] {
+            let value = datum.q[(entry % shape[0], entry / shape[0])];
             rhs[(row, entry)] = if datum.is_mirror { value.conj() } else { value };
         }
     }
@@ -88,7 +88,7 @@ pub(super) fn fit_patches(
     let coefficients = patches
         .iter()
         .enumerate()
-        .map(|(cell, patch)| in_powers_of_p(patch, &solved.solution, cell, order))
+        .map(|(cell, patch)| in_powers_of_p(patch, &solved.solution, cell, shape))
         .collect();
     Ok(Fitted {
         coefficients,
@@ -101,15 +101,15 @@ fn in_powers_of_p(
     patch: &Patch,
     solution: &Mat<c64>,
     cell: usize,
-    order: usize,
+    [rows, columns]: [usize; 2],
 ) -> [Mat<c64>; 3] {
     let (alpha, beta) = (
         1.0 / patch.half_diagonal(),
         -patch.centre() / patch.half_diagonal(),
     );
     [0, 1, 2].map(|exponent| {
-        Mat::from_fn(order, order, |row, column| {
-            let local = |index: usize| solution[(3 * cell + index, column * order + row)];
+        Mat::from_fn(rows, columns, |row, column| {
+            let local = |index: usize| solution[(3 * cell + index, column * rows + row)];
             match exponent {
                 0 => local(0) + local(1) * beta + local(2) * beta * beta,
                 1 => (local(1) + local(2) * 2.0 * beta) * alpha,
