@@ -267,6 +267,16 @@ impl GafTable {
         (0..self.k.len()).filter_map(move |j| self.sample(axis, j))
     }
 
+    /// The samples on the imaginary axis as a table of their own.
+    #[must_use]
+    pub fn axis_alone(&self) -> Self {
+        Self {
+            g: vec![0.0],
+            samples: self.axis().cloned().map(Some).collect(),
+            ..self.clone()
+        }
+    }
+
     /// Applies a change to every sample, with its $p$.
     pub(crate) fn change(&mut self, mut change: impl FnMut(c64, &mut Mat<c64>)) {
         for i in 0..self.g.len() {

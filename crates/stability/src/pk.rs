@@ -78,25 +78,30 @@ impl PkProblem<'_> {
         let order = self.reduced.order();
         let q = self.forces.q(k);
         let (constant, linear) = match self.form {
-            PkForm::Complex => (q, Mat::zeros(order, order)),
+            PkForm::Complex => {
+                let none = Mat::zeros(q.nrows(), q.ncols());
+                (q, none)
+            }
             PkForm::RealMatrices => {
                 let slope = (k.abs() < APERIODIC).then(|| self.forces.slope(k));
-                let damping = Mat::from_fn(order, order, |i, j| {
+                let damping = Mat::from_fn(q.nrows(), q.ncols(), |i, j| {
                     let value = slope
                         .as_ref()
                         .map_or_else(|| q[(i, j)].im / k, |s| s[(i, j)].im);
                     c64::new(value, 0.0)
                 });
                 (
-                    Mat::from_fn(order, order, |i, j| c64::new(q[(i, j)].re, 0.0)),
+                    Mat::from_fn(q.nrows(), q.ncols(), |i, j| c64::new(q[(i, j)].re, 0.0)),
                     damping,
                 )
             }
             PkForm::GMethod => {
                 let slope = self.forces.slope(k);
                 (
-                    Mat::from_fn(order, order, |i, j| q[(i, j)] - slope[(i, j)] * k),
-                    Mat::from_fn(order, order, |i, j| slope[(i, j)] * c64::new(0.0, -1.0)),
+                    Mat::from_fn(q.nrows(), q.ncols(), |i, j| q[(i, j)] - slope[(i, j)] * k),
+                    Mat::from_fn(q.nrows(), q.ncols(), |i, j| {
+                        slope[(i, j)] * c64::new(0.0, -1.0)
+                    }),
                 )
             }
         };

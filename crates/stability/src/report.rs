@@ -112,8 +112,8 @@ impl<'a> Reporter<'a> {
             let rate = point.airspeed / self.sweep.table.semichord();
             branch.push(point.airspeed, rate, root);
         }
-        let density = self.points[0].density;
-        if self.points.iter().any(|point| point.density != density) {
+        let is_over_altitude = self.points.iter().any(|point| point.altitude.is_some());
+        if is_over_altitude {
             branch.density = Some(points.iter().map(|point| point.density).collect());
             branch.altitude = points.iter().map(|point| point.altitude).collect();
             branch.mach = points.iter().map(|point| point.mach).collect();

@@ -19,9 +19,8 @@ pub(crate) fn all_roots(
 ) -> Result<Vec<c64>, NoConvergence> {
     let order = reduced.order();
     let loads = |matrix: &Mat<f64>| {
-        reduced.loads(&Mat::from_fn(order, order, |i, j| {
-            c64::new(matrix[(i, j)], 0.0)
-        }))
+        let real = reduced.real_loads(matrix);
+        Mat::from_fn(order, order, |i, j| c64::new(real[(i, j)], 0.0))
     };
     let coefficients: Vec<Mat<c64>> = fit.coefficients.iter().map(loads).collect();
     let (rest, lags) = (loads(&fit.at_rest), coefficients.len() - 2);

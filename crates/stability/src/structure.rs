@@ -254,7 +254,9 @@ impl Reduced {
         if let Some(path) = &self.flight_path {
             path.apply(&mut loads);
         }
-        Mat::from_fn(loads.nrows(), loads.ncols(), |i, j| loads[(i, j)] * self.pressure)
+        Mat::from_fn(loads.nrows(), loads.ncols(), |i, j| {
+            loads[(i, j)] * self.pressure
+        })
     }
 
     /// $q_\infty R$ for a real part $R$ of $Q$.
@@ -263,7 +265,9 @@ impl Reduced {
         if let Some(path) = &self.flight_path {
             path.apply(&mut loads);
         }
-        Mat::from_fn(loads.nrows(), loads.ncols(), |i, j| loads[(i, j)] * self.pressure)
+        Mat::from_fn(loads.nrows(), loads.ncols(), |i, j| {
+            loads[(i, j)] * self.pressure
+        })
     }
 
     /// Whether hysteretic damping is in the problem.

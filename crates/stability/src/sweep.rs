@@ -207,7 +207,8 @@ impl Sweep<'_> {
     pub fn run(&self, progress: &dyn Progress) -> Result<SweepResult, SweepError> {
         let points = self.checked_points()?;
         let semichord = self.table.semichord();
-        let reduced: Vec<Reduced> = points.par_iter().map(|point| self.reduced(point)).collect();
+        let reduced: Vec<Reduced> =
+            points.par_iter().map(|point| self.reduced(point)).collect();
         let run = Run {
             sweep: self,
             points: &points,
@@ -225,7 +226,9 @@ impl Sweep<'_> {
             methods.pk = Some(run.pk()?);
         }
         let density = points[0].density;
-        let is_constant = points.iter().all(|point| point.density == density);
+        let is_constant = points
+            .iter()
+            .all(|point| point.density == density && point.altitude.is_none());
         Ok(SweepResult {
             schema: SCHEMA,
             density: is_constant.then_some(density),

@@ -131,7 +131,9 @@ impl FlightSetting {
             .as_ref()
             .map_or_else(|| vec![1.0], |mixture| mixture.weights(point));
         let parts = || self.loads.iter().zip(&weights);
-        let slope = parts().map(|(part, weight)| part.heave_slope * weight).sum();
+        let slope = parts()
+            .map(|(part, weight)| part.heave_slope * weight)
+            .sum();
         let force = |mode: usize| -> Option<f64> {
             parts()
                 .map(|(part, weight)| Some(part.steady[mode]? * weight))

@@ -3,15 +3,12 @@
 
 use super::aerodynamics::{AnalyticMode, Gaf, Mesh};
 use super::check_structure::structure;
-use super::{Case, CaseFile, Places, Range, SolverChoice, Speeds, Stability, Structure, Trim};
+use super::check_sweep::{flight, stability};
+use super::{Case, CaseFile, Places, SolverChoice, Structure};
 use crate::atmosphere;
 use crate::failure::Failure;
 
 pub(super) type Checked = Result<(), Failure>;
-
-/// More points than this in a sweep are taken for a slip of the keyboard: it
-/// is a hundred times what a picture can show.
-const MOST_POINTS: usize = 100_000;
 
 /// Refuses what has no meaning, the first fault found.
 pub(super) fn check(file: &CaseFile) -> Checked {
@@ -43,7 +40,7 @@ pub(super) fn check(file: &CaseFile) -> Checked {
     flight(case, &at)?;
     case.stability
         .as_ref()
-        .map_or(Ok(()), |swept| stability(swept, &at))
+        .map_or(Ok(()), |swept| stability(case, swept, &at))
 }
 
 /// Makes failures that carry the place of a key.
@@ -168,12 +165,19 @@ fn density(case: &Case, at: &At<'_>) -> Checked {
                 "give an altitude in that range, or flow.density instead",
             ))
         }
-        (None, None) if case.stability.is_some() => Err(at.refuse(
-            "flow.density",
-            "neither `flow.density` nor `flow.altitude` is given",
-            "the dynamic pressure of a speed needs the density",
-            "add density = 1.225 (kg/m³) or altitude = 0.0 (m) to [flow]",
-        )),
+        (None, None)
+            if case
+                .stability
+                .as_ref()
+                .is_some_and(|swept| swept.altitude.is_none()) =>
+        {
+            Err(at.refuse(
+                "flow.density",
+                "neither `flow.density` nor `flow.altitude` is given",
+                "the dynamic pressure of a speed needs the density",
+                "add density = 1.225 (kg/m³) or altitude = 0.0 (m) to [flow]",
+            ))
+        }
         (None, None) => Ok(()),
     }
 }
@@ -391,98 +395,6 @@ fn analytic(
             &format!("{key}.polynomial.{number}.coefficient"),
             term.coefficient,
         )?;
-    }
-    Ok(())
-}
-
-fn flight(case: &Case, at: &At<'_>) -> Checked {
-    let Some(flight) = &case.flight else {
-        return Ok(());
-    };
-    if case
-        .structure
-        .as_ref()
-        .is_none_or(|structure| structure.rigid_body.is_none())
-    {
-        return Err(at.refuse(
-            "flight",
-            "[flight] is there without [structure.rigid_body]",
-            "gravity and drag act on the rigid modes",
-            "add [structure.rigid_body], or remove [flight]",
-        ));
-    }
-    at.positive("flight.gravity", flight.gravity)?;
-    at.finite("flight.climb_deg", flight.climb_deg)?;
-    at.not_negative("flight.parasite_drag_area", flight.parasite_drag_area)?;
-    at.not_negative("flight.induced_drag_factor", flight.induced_drag_factor)?;
-    if flight.climb_deg.abs() >= 90.0 {
-        return Err(at.refuse(
-            "flight.climb_deg",
-            format!("`flight.climb_deg` is {}", flight.climb_deg),
-            "no lift balances the weight in a vertical climb",
-            "give an angle between -90 and 90 degrees",
-        ));
-    }
-    if flight.trim == Trim::Level {
-        return Err(at.refuse(
-            "flight.trim",
-            "`flight.trim = \"level\"` is not computed yet",
-            "every speed would need forces at its own incidence",
-            "set trim = \"none\" and flow.alpha_deg for one speed",
-        ));
-    }
-    Ok(())
-}
-
-fn stability(swept: &Stability, at: &At<'_>) -> Checked {
-    if swept.altitude.is_some() || swept.matched {
-        let key = if swept.matched {
-            "stability.matched"
-        } else {
-            "stability.altitude"
-        };
-        return Err(at.refuse(
-            key,
-            "sweeps over altitude and matched sweeps are not computed yet",
-            "the result would be that of another sweep",
-            "sweep over speed at one density: speed = { from, to, count }",
-        ));
-    }
-    let Some(speeds) = &swept.speed else {
-        return Err(at.refuse(
-            "stability",
-            "[stability] names no speeds",
-            "there is nothing to sweep",
-            "add speed = { from = 20.0, to = 75.0, count = 56 }",
-        ));
-    };
-    if let Speeds::Range(range) = speeds {
-        check_range("stability.speed", range, at)?;
-    }
-    let values = speeds.values();
-    at.all_finite("stability.speed", &values)?;
-    let first = values.first().copied().unwrap_or_default();
-    if first <= 0.0 || values.windows(2).any(|pair| pair[0] >= pair[1]) {
-        return Err(at.refuse(
-            "stability.speed",
-            "the speeds must be positive and ascend",
-            "roots are followed from one speed to the next, and p = sb/U needs U > 0",
-            "give positive speeds in m/s, lowest first, none twice",
-        ));
-    }
-    Ok(())
-}
-
-fn check_range(key: &str, range: &Range, at: &At<'_>) -> Checked {
-    at.finite(&format!("{key}.from"), range.from)?;
-    at.finite(&format!("{key}.to"), range.to)?;
-    if range.count == 0 || range.count > MOST_POINTS {
-        return Err(at.refuse(
-            &format!("{key}.count"),
-            format!("`{key}.count` is {}", range.count),
-            "a sweep has between 1 and 100000 points",
-            "56 or 200 are usual",
-        ));
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! Trimmed flight, and what is swept.
 
+use super::OneOrMany;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
@@ -15,6 +16,9 @@ pub struct Flight {
     pub climb_deg: f64,
     /// Whether each speed has its own incidence.
     pub trim: Trim,
+    /// Controls, by the names of their modes, whose deflection balances the
+    /// pitching moment; all turn by the same angle.
+    pub trim_control: Option<OneOrMany<String>>,
     /// How thrust answers to speed.
     pub thrust: Thrust,
     /// $D_0/q_\infty$ in m².
@@ -34,6 +38,7 @@ impl Default for Flight {
             gravity: STANDARD_GRAVITY,
             climb_deg: 0.0,
             trim: Trim::None,
+            trim_control: None,
             thrust: Thrust::ConstantPower,
             parasite_drag_area: 0.0,
             induced_drag_factor: 0.0,

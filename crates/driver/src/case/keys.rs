@@ -84,6 +84,7 @@ pub(crate) const KEYS: &[&str] = &[
     "flight.gravity",
     "flight.climb_deg",
     "flight.trim",
+    "flight.trim_control",
     "flight.thrust",
     "flight.parasite_drag_area",
     "flight.induced_drag_factor",

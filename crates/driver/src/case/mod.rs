@@ -3,6 +3,7 @@
 mod aerodynamics;
 mod check;
 mod check_structure;
+mod check_sweep;
 mod flight;
 mod keys;
 mod one_or_many;

@@ -1,7 +1,7 @@
 //! $Q(p)$ itself where roots are refined.
 
 use faer::{Mat, c64};
-use fladder_bem::TransferModel;
+use fladder_bem::{Flow, TransferModel};
 use fladder_stability::{Aerodynamics, RationalFit};
 
 /// Forces of the swept modes, which come first, evaluated without any fit.
@@ -11,6 +11,8 @@ use fladder_stability::{Aerodynamics, RationalFit};
 /// costs.
 pub(crate) struct ExactForces<'a> {
     pub(crate) transfer: &'a TransferModel,
+    /// Incidences whose forces stand side by side.
+    pub(crate) flows: &'a [Flow],
     pub(crate) slopes: &'a RationalFit,
 }
 
@@ -25,10 +27,10 @@ impl ExactForces<'_> {
             p
         };
         let order = self.slopes.order();
-        self.transfer
-            .q(at)
-            .ok()
-            .map(|q| q.submatrix(0, 0, order, order).to_owned())
+        let parts = self.transfer.q_at_each(at, self.flows).ok()?;
+        Some(Mat::from_fn(order, order * parts.len(), |i, j| {
+            parts[j / order][(i, j % order)]
+        }))
     }
 }
 
@@ -41,13 +43,13 @@ impl Aerodynamics for ExactForces<'_> {
     /// $Q$ has no value every entry is NaN, which no iteration takes for a
     /// root.
     fn q(&self, p: c64) -> Mat<c64> {
-        let order = self.order();
+        let (order, columns) = (self.order(), self.order() * self.flows.len());
         match self.above(p) {
             Some(q) if p.im == 0.0 => {
-                Mat::from_fn(order, order, |i, j| c64::new(q[(i, j)].re, 0.0))
+                Mat::from_fn(order, columns, |i, j| c64::new(q[(i, j)].re, 0.0))
             }
             Some(q) => q,
-            None => Mat::from_fn(order, order, |_, _| c64::new(f64::NAN, f64::NAN)),
+            None => Mat::from_fn(order, columns, |_, _| c64::new(f64::NAN, f64::NAN)),
         }
     }
 

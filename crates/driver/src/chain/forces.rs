@@ -1,26 +1,36 @@
 //! Forces as a sweep needs them: of the swept modes, rigid ones in body axes.
 
 use super::aircraft::Aircraft;
+use super::conditions::Conditions;
+use super::given;
+use super::level;
 use super::own_forces::{self, OwnForces};
 use super::structure::{StructureData, stability_body};
 use crate::case::CaseFile;
 use crate::failure::Failure;
-use crate::gaf_json::{self, Document, Frame, Given};
+use crate::gaf_json::{Document, Frame};
 use faer::{Mat, c64};
-use fladder_bem::TransferModel;
-use fladder_stability::{self as stability, GafPoint, GafTable};
-use std::path::PathBuf;
+use fladder_bem::{Flow, TransferModel};
+use fladder_stability::{self as stability, GafPoint, GafTable, Incidences, Mixture};
+use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Samples of $Q$ with all that belongs to them.
 #[derive(Debug)]
 pub(crate) struct Forces {
-    /// Samples of the swept modes.
+    /// Samples of the swept modes, parts side by side.
     pub(crate) table: GafTable,
-    /// Incidence and sideslip they hold for, rad.
-    pub(crate) alpha: f64,
-    pub(crate) beta: f64,
+    /// How the parts make the forces of a flight condition, where there are
+    /// several.
+    pub(crate) mixture: Option<Arc<dyn Mixture>>,
+    /// Steady forces of the modes, for each part.
+    pub(crate) steady: Vec<Vec<Option<f64>>>,
     /// Where $Q$ can be evaluated anywhere, if it can.
     pub(crate) transfer: Option<TransferModel>,
+    /// Incidence of each part, where it can.
+    pub(crate) flows: Vec<Flow>,
+    /// Flight conditions of the sweep.
+    pub(crate) conditions: Conditions,
     /// Sentences for the user.
     pub(crate) notes: Vec<String>,
 }
@@ -29,195 +39,155 @@ impl Forces {
     /// From what was computed here, on the grid of the case.
     ///
     /// # Errors
-    /// A grid that is none.
+    /// A grid that is none; a speed at which no incidence carries the weight.
     pub(crate) fn own(
         file: &CaseFile,
         aircraft: &Aircraft,
         forces: &OwnForces,
         document: &Document,
     ) -> Result<Self, Failure> {
-        let order = aircraft.swept_modes(file);
-        let entry =
-            |q: &Vec<Vec<[f64; 2]>>, i: usize, j: usize| c64::new(q[i][j][0], q[i][j][1]);
-        let points = document
-            .points
-            .iter()
-            .map(|sample| GafPoint {
-                g: sample.g,
-                k: sample.k,
-                q: Mat::from_fn(order, order, |i, j| entry(&sample.q, i, j)),
-            })
-            .collect();
-        let table = GafTable::new(
-            document.semichord,
-            document.mach,
-            document.modes[..order].to_vec(),
-            points,
-            document.steady[..order].to_vec(),
-        )
-        .map_err(|error| {
-            Failure::input(
-                error.to_string(),
-                file.places.of("gaf"),
-                "roots are found from forces on a grid that contains the imaginary axis",
-                "correct k and g of [gaf]",
-            )
-        })?;
-        let made = Self {
+        let stored = &forces.stored;
+        let flow = Flow {
             alpha: document.alpha_deg.to_radians(),
             beta: document.beta_deg.to_radians(),
-            transfer: Some(forces.stored.solution.transfer.clone()),
-            notes: Vec::new(),
-            table,
         };
-        let frames: Vec<Frame> = document.frames[..order].to_vec();
-        made.in_body_frame(file, &aircraft.structure, &frames)
+        let trim = level::own(file, aircraft, stored)?;
+        let conditions = Conditions::of(file)?
+            .at_incidence(flow.alpha, flow.beta)
+            .trimmed(trim);
+        let mut notes = level::notes(file, &conditions)?;
+        let incidences = conditions.is_trimmed().then(|| {
+            let alphas: Vec<f64> = conditions
+                .points()
+                .iter()
+                .map(|point| point.alpha)
+                .collect();
+            let low = alphas.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = alphas.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            Incidences::over(low, high)
+        });
+        let flows = match &incidences {
+            Some(nodes) => nodes.values().map(|alpha| Flow { alpha, ..flow }).to_vec(),
+            None => vec![flow],
+        };
+        let order = aircraft.swept_modes(file);
+        let sheets = samples(file, &stored.solution.transfer, &flows, order)?;
+        let steady: Vec<Vec<Option<f64>>> = flows
+            .iter()
+            .map(|flow| {
+                let all = stored
+                    .solution
+                    .steady
+                    .generalised_forces_at(flow.stream().into());
+                all.into_iter().take(order).map(Some).collect()
+            })
+            .collect();
+        let mut tables = Vec::new();
+        for (points, (flow, steady)) in sheets.into_iter().zip(flows.iter().zip(&steady)) {
+            let table = GafTable::new(
+                document.semichord,
+                document.mach,
+                document.modes[..order].to_vec(),
+                points,
+                steady.clone(),
+            )
+            .map_err(|error| {
+                Failure::input(
+                    error.to_string(),
+                    file.places.of("gaf"),
+                    "roots are found from forces on a grid that contains the imaginary axis",
+                    "correct k and g of [gaf]",
+                )
+            })?;
+            let frames = &document.frames[..order];
+            tables.push(in_body_frame(
+                file,
+                &aircraft.structure,
+                table,
+                frames,
+                flow.alpha,
+            )?);
+        }
+        let table = side_by_side(file, &tables)?;
+        notes.extend_from_slice(table.notes());
+        Ok(Self {
+            table,
+            mixture: incidences.map(|nodes| Arc::new(nodes) as Arc<dyn Mixture>),
+            steady,
+            transfer: Some(stored.solution.transfer.clone()),
+            flows,
+            conditions,
+            notes,
+        })
     }
 
-    /// From the file that the case names.
+    /// From the files that the case names.
     ///
     /// # Errors
     /// Unreadable files, and forces that do not fit the case.
     pub(crate) fn given(file: &CaseFile, structure: &StructureData) -> Result<Self, Failure> {
-        let (path, given) = chosen(file)?;
-        let place = path.display().to_string();
-        fits(file, &given, &place)?;
-        let names = structure
-            .clone()
-            .with_rigid_modes_of(given.table.modes())
-            .mode_names();
-        let has_matrices = file
-            .case
-            .structure
-            .as_ref()
-            .is_some_and(|given| given.matrices.is_some());
-        let modes = given.table.modes();
-        let agree = if has_matrices {
-            modes.starts_with(&names)
-        } else {
-            modes == names
-        };
-        if file.case.structure.is_some() && !agree {
-            return Err(Failure::input(
-                format!(
-                    "the forces are of the modes {}, the structure has {}",
-                    modes.join(", "),
-                    names.join(", ")
-                ),
-                place,
-                "rows and columns of Q would meet other modes",
-                "order and name the modes of the file as the case does: rigid, elastic, analytic",
-            ));
-        }
-        let alpha_deg = angle(
-            file,
-            "flow.alpha_deg",
-            file.case.flow.alpha_deg,
-            given.alpha_deg,
-        )?;
-        let beta_deg = angle(
-            file,
-            "flow.beta_deg",
-            file.case.flow.beta_deg,
-            given.beta_deg,
-        )?;
-        let made = Self {
-            table: given.table,
-            alpha: alpha_deg.to_radians(),
-            beta: beta_deg.to_radians(),
-            transfer: None,
-            notes: vec![format!("forces from {place}")],
-        };
-        made.in_body_frame(file, structure, &given.frames)
-    }
-
-    /// Rigid columns in body axes, exactly zero at rest.
-    fn in_body_frame(
-        mut self,
-        file: &CaseFile,
-        structure: &StructureData,
-        frames: &[Frame],
-    ) -> Result<Self, Failure> {
-        let Some(body) = &structure.body else {
-            self.notes.extend_from_slice(self.table.notes());
-            return Ok(self);
-        };
-        let frames: Vec<stability::Frame> =
-            frames.iter().map(|frame| (*frame).into()).collect();
-        self.table =
-            stability::to_body_frame(self.table, &frames, &stability_body(body), self.alpha)
-                .map_err(|error| {
-                    Failure::input(
-                        error.to_string(),
-                        file.places.of("gaf.file"),
-                        "rigid modes are swept in body axes",
-                        "give all six rigid modes in the file (three of a half model), or those in frame body",
-                    )
-                })?;
-        self.notes.extend_from_slice(self.table.notes());
-        Ok(self)
+        given::read(file, structure)
     }
 }
 
-/// The file of the case's Mach number, or the only one.
-fn chosen(file: &CaseFile) -> Result<(PathBuf, Given), Failure> {
-    let listed = file
-        .case
-        .gaf
-        .file
-        .as_ref()
-        .map_or(&[][..], |files| files.as_slice());
-    let mut read = Vec::new();
-    for path in listed {
-        let full = file.existing("gaf.file", path)?;
-        let given = gaf_json::read(&full)?;
-        read.push((full, given));
-    }
-    let is_single = read.len() == 1 && !file.places.has("flow.mach");
-    let there: Vec<String> = read
-        .iter()
-        .map(|(_, given)| given.table.mach().to_string())
-        .collect();
-    let mach = file.case.flow.mach;
-    read.into_iter()
-        .find(|(_, given)| is_single || given.table.mach() == mach)
-        .ok_or_else(|| {
-            Failure::input(
-                format!(
-                    "no file of forces has Mach number {mach}; there are {}",
-                    there.join(", ")
-                ),
-                file.places.of("gaf.file"),
-                "forces of another Mach number give other roots",
-                "set flow.mach to one of these, or give the file of that Mach number",
-            )
+/// $Q$ of the swept modes on the grid of the case, one list for each incidence.
+fn samples(
+    file: &CaseFile,
+    transfer: &TransferModel,
+    flows: &[Flow],
+    order: usize,
+) -> Result<Vec<Vec<GafPoint>>, Failure> {
+    let grid = own_forces::grid(file);
+    let each: Vec<Vec<GafPoint>> = grid
+        .par_iter()
+        .map(|&[g, k]| {
+            let parts = transfer
+                .q_at_each(c64::new(g, k), flows)
+                .map_err(|error| own_forces::not_evaluated(&error))?;
+            let sample = |q: Mat<c64>| GafPoint {
+                g,
+                k,
+                q: q.submatrix(0, 0, order, order).to_owned(),
+            };
+            Ok(parts.into_iter().map(sample).collect())
         })
+        .collect::<Result<_, Failure>>()?;
+    let of_part = |part: usize| each.iter().map(|points| points[part].clone()).collect();
+    Ok((0..flows.len()).map(of_part).collect())
 }
 
-fn fits(file: &CaseFile, given: &Given, place: &str) -> Result<(), Failure> {
-    let (theirs, ours) = (given.table.semichord(), file.case.reference.semichord);
-    if (theirs - ours).abs() <= 1e-9 * ours {
-        return Ok(());
-    }
-    Err(Failure::input(
-        format!("the forces have semichord {theirs} m, the case has {ours} m"),
-        format!("{place}; {}", file.places.of("reference.semichord")),
-        "k and g are reduced by the semichord, so the forces would be read at wrong points",
-        "give both the same semichord",
-    ))
+/// Rigid columns in body axes, exactly zero at rest.
+pub(super) fn in_body_frame(
+    file: &CaseFile,
+    structure: &StructureData,
+    table: GafTable,
+    frames: &[Frame],
+    alpha: f64,
+) -> Result<GafTable, Failure> {
+    let Some(body) = &structure.body else {
+        return Ok(table);
+    };
+    let frames: Vec<stability::Frame> = frames.iter().map(|frame| (*frame).into()).collect();
+    stability::to_body_frame(table, &frames, &stability_body(body), alpha).map_err(|error| {
+        Failure::input(
+            error.to_string(),
+            file.places.of("gaf.file"),
+            "rigid modes are swept in body axes",
+            "give all six rigid modes in the file (three of a half model), or those in frame body",
+        )
+    })
 }
 
-/// The file's angle, unless the case states another.
-fn angle(file: &CaseFile, key: &str, stated: f64, theirs: f64) -> Result<f64, Failure> {
-    if !file.places.has(key) || (stated - theirs).abs() <= 1e-9 {
-        return Ok(theirs);
-    }
-    Err(Failure::input(
-        format!("the forces are of {theirs} degrees, `{key}` is {stated}"),
-        file.places.of(key),
-        "the forces depend on the incidence they are linearised about",
-        "leave the key out, or give forces of that incidence",
-    ))
+/// One table of all parts.
+pub(super) fn side_by_side(file: &CaseFile, tables: &[GafTable]) -> Result<GafTable, Failure> {
+    GafTable::side_by_side(tables).map_err(|error| {
+        Failure::input(
+            error.to_string(),
+            file.places.of("gaf.file"),
+            "between Mach numbers forces are interpolated entry by entry",
+            "give files with the same modes, semichord, k and g",
+        )
+    })
 }
 
 impl From<Frame> for stability::Frame {

@@ -73,6 +73,8 @@ pub(crate) fn problem<'a>(file: &CaseFile, aircraft: &'a Aircraft) -> Problem<'a
             beta: case.flow.beta_deg.to_radians(),
         },
         wake_direction: match case.wake.direction {
+            // One model serves every incidence of a trimmed sweep.
+            WakeDirection::Freestream if is_level(case) => fladder_bem::WakeDirection::Held,
             WakeDirection::Freestream => fladder_bem::WakeDirection::Freestream,
             WakeDirection::X => fladder_bem::WakeDirection::X,
         },
@@ -87,6 +89,11 @@ pub(crate) fn problem<'a>(file: &CaseFile, aircraft: &'a Aircraft) -> Problem<'a
             case.reference.semichord,
         )
     }
+}
+
+fn is_level(case: &case::Case) -> bool {
+    let flight = case.flight.as_ref();
+    flight.is_some_and(|flight| flight.trim == case::Trim::Level)
 }
 
 fn solver(gaf: &case::Gaf, vertices: usize) -> Solver {
@@ -115,6 +122,7 @@ pub(crate) fn key(file: &CaseFile, problem: &Problem<'_>) -> Key {
     let direction: &[u8] = match problem.wake_direction {
         fladder_bem::WakeDirection::Freestream => b"freestream",
         fladder_bem::WakeDirection::X => b"x",
+        fladder_bem::WakeDirection::Held => b"held",
     };
     let mut builder = KeyBuilder::new(MEANING)
         .numbers("vertices", coordinates.into_iter())

@@ -1,7 +1,6 @@
 //! The smooth $Q(p)$ on which roots are refined.
 
-use faer::Mat;
-use fladder_stability::{GafPoint, GafTable, RationalFit};
+use fladder_stability::{GafTable, RationalFit};
 
 /// Misfit, as a part of the largest entry, above which a rational model of all
 /// samples is held against one of the imaginary axis alone. Forces with a
@@ -22,7 +21,7 @@ pub(crate) fn smooth(table: &GafTable) -> Result<(RationalFit, Vec<String>), Str
     if table.g().len() == 1 || whole.residual() <= WORTH_COMPARING {
         return Ok((whole, notes));
     }
-    let axis = axis_of(table).and_then(|axis| RationalFit::new(&axis).ok());
+    let axis = RationalFit::new(&table.axis_alone()).ok();
     match axis.filter(|axis| axis.residual() < CLEARLY_BETTER * whole.residual()) {
         Some(axis) => {
             notes = axis.notes().to_vec();
@@ -36,21 +35,4 @@ pub(crate) fn smooth(table: &GafTable) -> Result<(RationalFit, Vec<String>), Str
         }
         None => Ok((whole, notes)),
     }
-}
-
-/// The samples on the imaginary axis as a table of their own.
-fn axis_of(table: &GafTable) -> Option<GafTable> {
-    let point = |(k, q): (&f64, &Mat<faer::c64>)| GafPoint {
-        g: 0.0,
-        k: *k,
-        q: q.clone(),
-    };
-    GafTable::new(
-        table.semichord(),
-        table.mach(),
-        table.modes().to_vec(),
-        table.k().iter().zip(table.axis()).map(point).collect(),
-        table.steady().to_vec(),
-    )
-    .ok()
 }

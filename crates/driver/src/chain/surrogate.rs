@@ -51,7 +51,8 @@ pub(crate) struct Surrogate {
 
 #[derive(Debug)]
 struct Interpolant {
-    order: usize,
+    /// Rows and columns of the values.
+    shape: [usize; 2],
     support: Vec<Support>,
 }
 
@@ -114,16 +115,17 @@ impl Interpolant {
     }
 
     fn blend(&self, factors: &[c64], divisor: c64) -> Mat<c64> {
-        let mut q = vec![c64::new(0.0, 0.0); self.order * self.order];
+        let [rows, columns] = self.shape;
+        let mut q = vec![c64::new(0.0, 0.0); rows * columns];
         for (s, factor) in self.support.iter().zip(factors) {
             let factor = factor / divisor;
-            for (sum, column) in q.chunks_exact_mut(self.order).zip(s.value.col_iter()) {
+            for (sum, column) in q.chunks_exact_mut(rows).zip(s.value.col_iter()) {
                 for (total, value) in sum.iter_mut().zip(column.iter()) {
                     *total += factor * value;
                 }
             }
         }
-        MatRef::from_column_major_slice(&q, self.order, self.order).to_owned()
+        MatRef::from_column_major_slice(&q, rows, columns).to_owned()
     }
 
     fn value(&self, p: c64) -> Mat<c64> {
@@ -144,7 +146,7 @@ impl Interpolant {
         let divided: Vec<c64> = self.support.iter().zip(&fractions).map(divide).collect();
         let total: c64 = divided.iter().sum::<c64>() / sum;
         let pulled = self.blend(&divided, sum);
-        let slope = Mat::from_fn(self.order, self.order, |i, j| {
+        let slope = Mat::from_fn(q.nrows(), q.ncols(), |i, j| {
             q[(i, j)] * total - pulled[(i, j)]
         });
         (if is_met { self.value(p) } else { q }, slope)
@@ -173,7 +175,7 @@ fn on_side(p: c64, mut q: Mat<c64>) -> Mat<c64> {
 
 impl Aerodynamics for Surrogate {
     fn order(&self) -> usize {
-        self.regular.order
+        self.regular.shape[0]
     }
 
     fn q(&self, p: c64) -> Mat<c64> {
@@ -233,7 +235,7 @@ impl Signs {
 struct Samples {
     points: Vec<c64>,
     values: Vec<Mat<c64>>,
-    order: usize,
+    shape: [usize; 2],
 }
 
 impl Samples {
@@ -241,16 +243,23 @@ impl Samples {
     fn new(exact: &ExactForces<'_>, points: &[c64]) -> Self {
         let values: Vec<Option<Mat<c64>>> =
             points.par_iter().map(|p| exact.above(*p)).collect();
-        let (points, values) = points
+        let (points, values): (_, Vec<Mat<c64>>) = points
             .iter()
             .zip(values)
             .filter_map(|(point, value)| Some((*point, value?)))
             .unzip();
+        let first = values.first();
         Self {
             points,
+            shape: first.map_or([exact.order(); 2], |q| [q.nrows(), q.ncols()]),
             values,
-            order: exact.order(),
         }
+    }
+
+    /// Places of all entries, column by column.
+    fn places(&self) -> impl Iterator<Item = (usize, usize)> {
+        let [rows, columns] = self.shape;
+        (0..columns).flat_map(move |j| (0..rows).map(move |i| (i, j)))
     }
 
     /// What each entry is divided by.
@@ -261,14 +270,13 @@ impl Samples {
                 .map(|q| q[(i, j)].norm())
                 .fold(0.0, f64::max)
         };
-        let sizes = Mat::from_fn(self.order, self.order, size);
-        let entries = (0..self.order).flat_map(|j| (0..self.order).map(move |i| (i, j)));
-        let largest = entries
+        let [rows, columns] = self.shape;
+        let sizes = Mat::from_fn(rows, columns, size);
+        let largest = self
+            .places()
             .map(|place| sizes[place])
             .fold(f64::MIN_POSITIVE, f64::max);
-        Mat::from_fn(self.order, self.order, |i, j| {
-            sizes[(i, j)].max(NOISE * largest)
-        })
+        Mat::from_fn(rows, columns, |i, j| sizes[(i, j)].max(NOISE * largest))
     }
 
     /// Largest misfit of an interpolant, entry by entry.
@@ -276,10 +284,7 @@ impl Samples {
         let at = |(p, q): (&c64, &Mat<c64>)| {
             let r = surrogate.at(*p).value(*p);
             let entry = |i: usize, j: usize| (r[(i, j)] - q[(i, j)]).norm() / scales[(i, j)];
-            (0..self.order)
-                .flat_map(|j| (0..self.order).map(move |i| (i, j)))
-                .map(|(i, j)| entry(i, j))
-                .fold(0.0, f64::max)
+            self.places().map(|(i, j)| entry(i, j)).fold(0.0, f64::max)
         };
         self.points
             .par_iter()
@@ -292,14 +297,14 @@ impl Samples {
     /// with signs at random: sums of squares over mixtures stand for those
     /// over entries.
     fn mixtures(&self) -> Mat<c64> {
-        let (order, scales) = (self.order, self.scales());
+        let ([rows, columns], scales) = (self.shape, self.scales());
         let mut signs = Signs(1);
         let factors: Vec<Vec<f64>> = (0..MIXTURES)
-            .map(|_| (0..order * order).map(|_| signs.next()).collect())
+            .map(|_| (0..rows * columns).map(|_| signs.next()).collect())
             .collect();
         Mat::from_fn(self.points.len(), MIXTURES, |sample, mixture| {
             let entry = |(e, sign): (usize, &f64)| {
-                let (i, j) = (e % order, e / order);
+                let (i, j) = (e % rows, e / rows);
                 self.values[sample][(i, j)] * (sign / scales[(i, j)])
             };
             factors[mixture].iter().enumerate().map(entry).sum()
@@ -318,7 +323,7 @@ impl Samples {
             Self {
                 points,
                 values,
-                order: self.order,
+                shape: self.shape,
             }
         };
         let near = part(&|p| p.re <= 0.0 && p.im <= OVERLAP * CUT_SLOPE * -p.re);
@@ -349,7 +354,7 @@ impl Samples {
             value: self.value(node),
         });
         Some(Interpolant {
-            order: self.order,
+            shape: self.shape,
             support: support.collect(),
         })
     }
@@ -363,7 +368,7 @@ impl Samples {
                 value
             }
         };
-        Mat::from_fn(self.order, self.order, |i, j| side(q[(i, j)]))
+        Mat::from_fn(q.nrows(), q.ncols(), |i, j| side(q[(i, j)]))
     }
 
     /// Support points with weights of unit length that make the numerator and

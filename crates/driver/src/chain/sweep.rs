@@ -5,53 +5,14 @@ use super::forces::Forces;
 use super::smooth::smooth;
 use super::structure::{StructureData, system};
 use super::surrogate::Surrogate;
-use crate::atmosphere;
 use crate::case::{self, CaseFile, Refine};
 use crate::cli::Method;
 use crate::failure::Failure;
 use crate::terminal::{Bar, Console};
 use fladder_stability::{
-    self as stability, Aerodynamics, DEFAULT_DAMPING_LIMIT, OperatingPoint, PiecewiseQuadratic,
+    self as stability, Aerodynamics, DEFAULT_DAMPING_LIMIT, PartLoads, PiecewiseQuadratic,
     Sweep, SweepError, SweepResult, System,
 };
-
-/// Air density of the case, kg/m³.
-///
-/// # Errors
-/// The case gives none.
-pub(crate) fn density(file: &CaseFile) -> Result<f64, Failure> {
-    let flow = &file.case.flow;
-    flow.density
-        .or_else(|| flow.altitude.map(atmosphere::density))
-        .ok_or_else(|| {
-            Failure::input(
-                "neither `flow.density` nor `flow.altitude` is given",
-                file.places.of("flow.density"),
-                "the dynamic pressure of a speed needs the density",
-                "add density = 1.225 (kg/m³) or altitude = 0.0 (m) to [flow]",
-            )
-        })
-}
-
-/// Speeds of the case, m/s.
-///
-/// # Errors
-/// The case has no [stability].
-pub(crate) fn speeds(file: &CaseFile) -> Result<Vec<f64>, Failure> {
-    let swept = file
-        .case
-        .stability
-        .as_ref()
-        .and_then(|swept| swept.speed.as_ref());
-    swept.map(case::Speeds::values).ok_or_else(|| {
-        Failure::input(
-            "the case has no [stability] with speeds",
-            file.places.of("stability"),
-            "there is nothing to sweep",
-            "add [stability] with speed = { from = 20.0, to = 75.0, count = 56 }",
-        )
-    })
-}
 
 /// Sweeps the case.
 ///
@@ -65,22 +26,14 @@ pub(crate) fn run(
     method: Method,
     console: &Console,
 ) -> Result<SweepResult, Failure> {
-    let (density, speeds) = (density(file)?, speeds(file)?);
     let fit = PiecewiseQuadratic::centred(&forces.table, DEFAULT_DAMPING_LIMIT)
         .map_err(|error| unfit(file, &error.to_string()))?;
     console.notes(fit.notes());
     let system = complete_system(file, structure, forces, &fit, console)?;
-    let points: Vec<OperatingPoint> = speeds
-        .iter()
-        .map(|speed| OperatingPoint {
-            alpha: forces.alpha,
-            beta: forces.beta,
-            ..OperatingPoint::new(*speed, density)
-        })
-        .collect();
     let (rational, notes) = smooth(&forces.table).map_err(|error| unfit(file, &error))?;
     let exact = forces.transfer.as_ref().map(|transfer| ExactForces {
         transfer,
+        flows: &forces.flows,
         slopes: &rational,
     });
     let surrogate = exact
@@ -103,7 +56,8 @@ pub(crate) fn run(
     let sweep = Sweep {
         smooth: Some(smooth),
         method: method.into(),
-        ..Sweep::new(&system, &points, &forces.table, &fit)
+        mixture: forces.mixture.as_deref(),
+        ..Sweep::new(&system, &forces.conditions, &forces.table, &fit)
     };
     let bar = Bar::new(console.is_quiet());
     bar.begin("sweeping speeds", sweep.steps() as u64);
@@ -146,14 +100,20 @@ fn complete_system(
     let heave = names
         .iter()
         .position(|name| name == stability::RIGID_NAMES[2]);
-    let heave_slope = heave.map_or(0.0, |z| fit.slope_at_origin(z, z));
-    let steady = forces.table.steady();
+    let order = names.len();
+    let loads: Vec<PartLoads> = (0..)
+        .zip(&forces.steady)
+        .map(|(part, steady)| PartLoads {
+            heave_slope: heave.map_or(0.0, |z| fit.slope_at_origin(z, part * order + z)),
+            steady: steady.clone(),
+        })
+        .collect();
     let is_elastic = |name: &String| !stability::RIGID_NAMES.contains(&name.as_str());
-    let unknown = names
-        .iter()
-        .zip(steady)
-        .filter(|(name, force)| is_elastic(name) && force.is_none());
-    let unknown = unknown.count();
+    let is_unknown = |mode: &usize| forces.steady.iter().any(|part| part[*mode].is_none());
+    let unknown = (0..order)
+        .filter(|mode| is_elastic(&names[*mode]))
+        .filter(is_unknown)
+        .count();
     if flight.speed_derivative && unknown > 0 {
         console.say(format!(
             "  note: the steady force of {unknown} elastic modes is unknown; their rows of the \
@@ -161,11 +121,11 @@ fn complete_system(
         ));
     }
     system
-        .with_flight(
+        .with_flight_loads(
             stability_flight(flight),
             forces.table.semichord(),
-            heave_slope,
-            steady,
+            loads,
+            forces.mixture.clone(),
         )
         .map_err(|error| unfit(file, &error.to_string()))
 }

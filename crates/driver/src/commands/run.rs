@@ -2,6 +2,7 @@
 
 use super::Session;
 use crate::chain::aircraft::Aircraft;
+use crate::chain::conditions::Conditions;
 use crate::chain::forces::{self, Forces};
 use crate::chain::own_forces;
 use crate::chain::structure::StructureData;
@@ -16,8 +17,8 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
     let file = session.case(path)?;
     let console = &session.console;
     // Before hours of computing it is known whether there is a sweep at all.
-    let speeds = sweeping::speeds(&file)?;
-    let density = sweeping::density(&file)?;
+    let conditions = Conditions::of(&file)?;
+    let speeds = conditions.speeds();
     let out = session.results_folder(&file);
     let mut aircraft = None;
     let mut modes = Vec::new();
@@ -51,7 +52,7 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
     session.write_json(&out.join("flutter.json"), &result)?;
     let write = |name: &str, text: String| session.write(&out.join(name), text);
     write("roots.csv", report::roots_csv(&result.methods))?;
-    let conditions = report::conditions(&file, &speeds, density);
+    let conditions = report::conditions(&file, &forces.conditions);
     let title = if file.case.title.is_empty() {
         &file.name
     } else {

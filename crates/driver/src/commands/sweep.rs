@@ -4,6 +4,7 @@ use super::Session;
 use crate::cache::Cache;
 use crate::case::CaseFile;
 use crate::chain::aircraft::Aircraft;
+use crate::chain::conditions::Conditions;
 use crate::chain::forces::{self, Forces};
 use crate::chain::own_forces::{self, OwnForces};
 use crate::chain::structure::StructureData;
@@ -21,7 +22,7 @@ pub(crate) fn sweep(
 ) -> Result<(), Failure> {
     let file = session.case(path)?;
     let console = &session.console;
-    let speeds = sweeping::speeds(&file)?;
+    let speeds = Conditions::of(&file)?.speeds();
     let (structure, forces) = if forces::are_given(&file) {
         let structure = StructureData::read(&file)?;
         let forces = Forces::given(&file, &structure)?;

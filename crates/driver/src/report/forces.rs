@@ -2,8 +2,8 @@
 
 use crate::case::CaseFile;
 use crate::chain::aircraft::Aircraft;
+use crate::chain::conditions;
 use crate::chain::own_forces::{Origin, OwnForces};
-use crate::chain::sweep::density;
 use crate::figures::fixed;
 use crate::gaf_json::Sample;
 use crate::memory::bytes_in_words;
@@ -136,7 +136,8 @@ fn drag(steady: &SteadyState) -> f64 {
 
 /// Speed at which the lift carries the weight.
 fn level_flight(console: &Console, file: &CaseFile, aircraft: &Aircraft, lift: f64) {
-    let (Some(body), Ok(density)) = (&aircraft.structure.body, density(file)) else {
+    let (Some(body), Ok(density)) = (&aircraft.structure.body, conditions::density(file))
+    else {
         return;
     };
     let gravity = file

@@ -1,6 +1,7 @@
 //! Roots, crossings and the verdict in words.
 
 use crate::case::CaseFile;
+use crate::chain::conditions::Conditions;
 use crate::figures::three_digits;
 use crate::terminal::{Align, Console, Table};
 use fladder_stability::{Branch, Crossing, Kind, MethodResult, Methods};
@@ -18,15 +19,22 @@ const NEAR_CUT: f64 = 1e-3;
 const NEARLY_ONE: f64 = 0.99;
 
 /// What a sweep was made at, on one line.
-pub(crate) fn conditions(file: &CaseFile, speeds: &[f64], density: f64) -> String {
+pub(crate) fn conditions(file: &CaseFile, conditions: &Conditions) -> String {
     let flow = &file.case.flow;
-    let (first, last) = (
-        speeds.first().unwrap_or(&0.0),
-        speeds.last().unwrap_or(&0.0),
-    );
+    let alpha = if conditions.is_trimmed() {
+        "alpha of level flight".to_owned()
+    } else {
+        format!("alpha {}°", flow.alpha_deg)
+    };
+    let mach = if conditions.is_matched() {
+        String::new()
+    } else {
+        format!(", M {}", flow.mach)
+    };
     format!(
-        "density {density:.4} kg/m³, {first}–{last} m/s, semichord {} m, alpha {}°, M {}",
-        file.case.reference.semichord, flow.alpha_deg, flow.mach
+        "{}, semichord {} m, {alpha}{mach}",
+        conditions.words(),
+        file.case.reference.semichord
     )
 }
 
