@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use crate::crossing::{Found, Resolver};
 use crate::eigenpair::Eigenpair;
 use crate::events::{Event, Turn};
+use crate::flight_modes::{FlightMode, Motion, Named, names};
 use crate::results::{
     Branch, Crossing, Divergence, Hump, Kind, MethodResult, TurnOfPair, UnstableStart,
 };
@@ -16,6 +17,7 @@ use crate::track::Track;
 pub(crate) struct Reporter<'a> {
     sweep: &'a Sweep<'a>,
     points: &'a [OperatingPoint],
+    reduced: &'a [Reduced],
     tracks: &'a [Track],
     rigid: Vec<usize>,
     names: Vec<String>,
@@ -26,7 +28,7 @@ impl<'a> Reporter<'a> {
     pub(crate) fn new(
         sweep: &'a Sweep<'a>,
         points: &'a [OperatingPoint],
-        reduced: &[Reduced],
+        reduced: &'a [Reduced],
         tracks: &'a [Track],
     ) -> Self {
         let rigid = sweep.structure.rigid_modes();
@@ -45,6 +47,7 @@ impl<'a> Reporter<'a> {
         Self {
             sweep,
             points,
+            reduced,
             tracks,
             rigid,
             names,
@@ -69,6 +72,7 @@ impl<'a> Reporter<'a> {
         }
         result.turns = events.iter().map(|event| self.turn(event)).collect();
         result.humps = self.humps(found);
+        result.flight_modes = self.flight_modes();
         for crossing in found {
             let entry = self.crossing(crossing);
             if !crossing.is_rising {
@@ -97,6 +101,53 @@ impl<'a> Reporter<'a> {
             .divergence
             .sort_by(|a, b| a.speed.total_cmp(&b.speed));
         result
+    }
+
+    /// Rigid motions of every speed, fastest first.
+    fn flight_modes(&self) -> Vec<FlightMode> {
+        let Some(flying) = self.sweep.structure.flying_body() else {
+            return Vec::new();
+        };
+        let semichord = self.sweep.table.semichord();
+        let modes = self.sweep.structure.modes();
+        let mut listed = Vec::new();
+        for (station, (point, reduced)) in self.points.iter().zip(self.reduced).enumerate() {
+            let mut there: Vec<(usize, Vec<f64>, Motion)> = Vec::new();
+            for (number, track) in self.tracks.iter().enumerate() {
+                if !(track.first..=track.last()).contains(&station) {
+                    continue;
+                }
+                let root = &track.roots[station - track.first];
+                let shares = reduced.energy_shares(&root.right);
+                if kind_of(&shares, &self.rigid) == Kind::Rigid {
+                    let held: f64 = self.rigid.iter().map(|mode| shares[*mode]).sum();
+                    let motion =
+                        Motion::new(&flying, point, semichord, root.p, &root.right, 1.0 - held);
+                    there.push((number, shares, motion));
+                }
+            }
+            there.sort_by(|a, b| b.2.p.norm().total_cmp(&a.2.p.norm()));
+            let (keys, motions): (Vec<(usize, Vec<f64>)>, Vec<Motion>) = there
+                .into_iter()
+                .map(|(number, shares, motion)| ((number, shares), motion))
+                .unzip();
+            let found = names(&motions);
+            for (((number, shares), motion), name) in keys.iter().zip(&motions).zip(found) {
+                let elastic = (0..shares.len()).filter(|mode| !self.rigid.contains(mode));
+                let leading = elastic
+                    .clone()
+                    .max_by(|a, b| shares[*a].total_cmp(&shares[*b]));
+                let named = Named {
+                    motion,
+                    name,
+                    branch: self.names[*number].clone(),
+                    elastic_share: elastic.map(|mode| shares[mode]).sum(),
+                    elastic_mode: leading.map(|mode| modes[mode].clone()),
+                };
+                listed.push(named.at(point, semichord));
+            }
+        }
+        listed
     }
 
     fn branch(&self, number: usize) -> Branch {

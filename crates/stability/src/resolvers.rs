@@ -131,6 +131,7 @@ impl Resolver for PolishedResolver<'_> {
             Sensitivity {
                 parameter: property.name.clone(),
                 unit: property.unit,
+                value: property.value,
                 speed,
                 frequency_hz: omega / std::f64::consts::TAU,
             }

@@ -7,6 +7,7 @@ use serde::Serialize;
 use faer::c64;
 
 use crate::count::Tally;
+use crate::flight_modes::FlightMode;
 use crate::sensitivity::Sensitivity;
 
 /// Version of the layout.
@@ -23,6 +24,9 @@ pub struct SweepResult {
     pub semichord: f64,
     /// Outcome by method.
     pub methods: Methods,
+    /// The same motions of the rigid aircraft by its derivatives alone.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rigid_aircraft: Vec<FlightMode>,
 }
 
 /// Outcome by method; what did not run is left out.
@@ -57,6 +61,10 @@ pub struct MethodResult {
     pub unstable_at_start: Vec<UnstableStart>,
     /// Branches that grow over a range of speeds inside the sweep.
     pub humps: Vec<Hump>,
+    /// Rigid motions by their names in flight mechanics, speed by speed; only
+    /// with a rigid body.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub flight_modes: Vec<FlightMode>,
     /// Pairs that turn into two real roots, and back.
     pub turns: Vec<TurnOfPair>,
     /// Whether the count of roots was met at each speed.

@@ -26,6 +26,8 @@ pub struct Parameter {
     pub name: String,
     /// Unit of the property.
     pub unit: &'static str,
+    /// Its present value, where it has one.
+    pub value: Option<f64>,
     /// $\partial M/\partial\theta$.
     pub mass: Mat<f64>,
     /// $\partial C/\partial\theta$.
@@ -40,6 +42,7 @@ impl Parameter {
         Self {
             name: name.into(),
             unit,
+            value: None,
             mass: Mat::zeros(order, order),
             damping: Mat::zeros(order, order),
             stiffness: Mat::zeros(order, order),
@@ -82,6 +85,8 @@ pub struct Sensitivity {
     pub parameter: String,
     /// Its unit; derivatives are per this unit.
     pub unit: &'static str,
+    /// Its present value, where it has one.
+    pub value: Option<f64>,
     /// Of the speed of the crossing, m/s.
     pub speed: f64,
     /// Of the frequency there, Hz.

@@ -14,6 +14,7 @@ use faer::traits::ComplexField;
 use faer::{Mat, c64};
 
 use crate::eigenpair::Eigenpair;
+use crate::flight_modes::FlyingBody;
 use crate::lane_lu::{LaneMatrices, WIDTH};
 use crate::pencil::Place;
 
@@ -131,6 +132,11 @@ pub trait Structure: Sync {
     fn modes(&self) -> &[String];
     /// Numbers of the rigid modes.
     fn rigid_modes(&self) -> Vec<usize>;
+    /// The rigid body that flies, where motions are to have the names of
+    /// flight mechanics.
+    fn flying_body(&self) -> Option<FlyingBody> {
+        None
+    }
     /// Matrices at a flight condition.
     fn at(&self, point: &OperatingPoint) -> StructuralMatrices;
 }
@@ -231,6 +237,24 @@ impl Reduced {
 
     pub(crate) fn order(&self) -> usize {
         self.mass.nrows()
+    }
+
+    /// The problem of some modes alone, without aerodynamics of its own.
+    pub(crate) fn restricted(&self, modes: &[usize]) -> Self {
+        let part = |matrix: &Mat<f64>| {
+            Mat::from_fn(modes.len(), modes.len(), |i, j| {
+                matrix[(modes[i], modes[j])]
+            })
+        };
+        Self {
+            mass: part(&self.mass),
+            damping: part(&self.damping),
+            stiffness: part(&self.stiffness),
+            hysteretic: None,
+            flight_path: None,
+            weights: None,
+            ..*self
+        }
     }
 
     /// Sum of the parts of a wide matrix.

@@ -13,6 +13,7 @@ use crate::count::{Census, Claim};
 use crate::crossing::{Found, Resolver, before_the_start, locate, sign_changes};
 use crate::eigenpair::Eigenpair;
 use crate::events::events;
+use crate::flight_modes::FlightMode;
 use crate::gaf::GafTable;
 use crate::hump::hidden_crossings;
 use crate::linalg::NoConvergence;
@@ -20,6 +21,7 @@ use crate::mixture::Mixture;
 use crate::p2::PiecewiseQuadratic;
 use crate::pencil::Pencil;
 use crate::pk::PkForm;
+use crate::quasi_steady::rigid_aircraft;
 use crate::refined::RefinedRoots;
 use crate::report::Reporter;
 use crate::resolvers::{P2Resolver, PkResolver, PolishedResolver};
@@ -234,6 +236,7 @@ impl Sweep<'_> {
             density: is_constant.then_some(density),
             semichord,
             methods,
+            rigid_aircraft: run.rigid_aircraft()?,
         })
     }
 
@@ -345,6 +348,22 @@ impl Run<'_> {
                 })
             })
             .collect()
+    }
+
+    fn rigid_aircraft(&self) -> Result<Vec<FlightMode>, SweepError> {
+        let Some(flying) = self.sweep.structure.flying_body() else {
+            return Ok(Vec::new());
+        };
+        let (fit, semichord) = (self.sweep.fit, self.sweep.table.semichord());
+        let mut listed = Vec::new();
+        for (point, reduced) in self.points.iter().zip(self.reduced) {
+            let motions = rigid_aircraft(&flying, fit, reduced, point, semichord);
+            listed.extend(motions.map_err(|source| SweepError::Numerical {
+                airspeed: point.airspeed,
+                source,
+            })?);
+        }
+        Ok(listed)
     }
 
     fn p2(&self) -> Result<MethodResult, SweepError> {

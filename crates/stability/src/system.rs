@@ -5,6 +5,7 @@ use std::sync::Arc;
 use faer::{Mat, c64};
 
 use crate::flight::{Flight, TrimAerodynamics};
+use crate::flight_modes::FlyingBody;
 use crate::mixture::Mixture;
 use crate::rigid::{RigidBody, RigidModes};
 use crate::sensitivity::Parameter;
@@ -395,16 +396,19 @@ impl System {
         let factor = self.hysteretic.as_ref().map_or(0.0, |list| list[mode]);
         let place = (mode, mode);
         let mut frequency = named("frequency", "Hz");
+        frequency.value = Some(rate / std::f64::consts::TAU);
         let per_hertz = std::f64::consts::TAU;
         frequency.stiffness[place] = c64::new(1.0, factor) * (2.0 * rate * mass * per_hertz);
         frequency.damping[place] = self.viscous[mode] * mass * per_hertz;
         let mut damping = named("damping", "1");
+        damping.value = Some(self.viscous[mode] + factor);
         if self.hysteretic.is_some() {
             damping.stiffness[place] = c64::new(0.0, stiffness);
         } else {
             damping.damping[place] = rate * mass;
         }
         let mut inertia = named("mass", "1");
+        inertia.value = Some(mass);
         inertia.mass[place] = 1.0;
         // C_ii = g sqrt(K M).
         inertia.damping[place] = 0.5 * self.viscous[mode] * rate;
@@ -419,6 +423,17 @@ impl Structure for System {
 
     fn rigid_modes(&self) -> Vec<usize> {
         self.rigid_modes.numbers()
+    }
+
+    fn flying_body(&self) -> Option<FlyingBody> {
+        self.body.map(|body| FlyingBody {
+            modes: self.rigid_modes,
+            body,
+            climb: self
+                .flight
+                .as_ref()
+                .map_or(0.0, |setting| setting.flight.climb),
+        })
     }
 
     fn at(&self, point: &OperatingPoint) -> StructuralMatrices {

@@ -11,9 +11,9 @@ mod common;
 use common::{data_path, matrix, number, read_json, roots, speeds};
 use faer::{Mat, c64};
 use fladder_stability::{
-    DEFAULT_DAMPING_LIMIT, Frame, GafPoint, GafTable, Method, OperatingPoint,
-    PiecewiseQuadratic, RIGID_NAMES, RigidBody, StructuralMatrices, Structure, Sweep, System,
-    to_body_frame,
+    DEFAULT_DAMPING_LIMIT, FlyingBody, Frame, GafPoint, GafTable, Method, OperatingPoint,
+    PiecewiseQuadratic, RIGID_NAMES, RigidBody, RigidModes, StructuralMatrices, Structure,
+    Sweep, System, to_body_frame,
 };
 use serde_json::Value;
 
@@ -46,6 +46,14 @@ impl Structure for Airliner {
 
     fn rigid_modes(&self) -> Vec<usize> {
         (0..6).collect()
+    }
+
+    fn flying_body(&self) -> Option<FlyingBody> {
+        Some(FlyingBody {
+            modes: RigidModes::among(&self.names),
+            body: self.body,
+            climb: 0.0,
+        })
     }
 
     fn at(&self, point: &OperatingPoint) -> StructuralMatrices {
@@ -133,6 +141,73 @@ fn jumbo_roots_agree_with_the_reference() {
             assert!(nearest / root.norm() < 1e-6, "{root}");
         }
     }
+}
+
+/// Every motion has its name, and the ratios obey the equations of motion:
+/// $\dot\theta = q$ with level flight at zero incidence gives for the heave
+/// $\dot w = \dots$; here the kinematic one, side force against heading:
+/// in a Dutch roll $\beta\approx-\psi$ within a third, in a phugoid
+/// $|u/U|\gg|\alpha|$, in the short period the reverse. The rigid aircraft by
+/// derivatives, without the terms of acceleration, has the same motions.
+#[test]
+fn jumbo_motions_have_their_names() {
+    let file = read_json("stability_flightmech_b747.json");
+    let body = body_of(&file);
+    let table = airliner_table(&file, &body);
+    let fit = PiecewiseQuadratic::centred(&table, DEFAULT_DAMPING_LIMIT).unwrap();
+    let structure = Airliner {
+        names: names(),
+        body,
+        gravity: number(&file["g"]),
+    };
+    let schedule = speeds([number(&file["U"])], 1.0);
+    let result = Sweep {
+        method: Method::Unrefined,
+        ..Sweep::new(&structure, &schedule, &table, &fit)
+    }
+    .run(&())
+    .unwrap();
+    let modes = result.methods.p2.unwrap().flight_modes;
+    let named: Vec<&str> = modes.iter().map(|mode| mode.motion).collect();
+    let ratio = |motion: &str, name: &str| {
+        let mode = modes.iter().find(|mode| mode.motion == motion).unwrap();
+        let ratio = mode.ratios.iter().find(|ratio| ratio.name == name).unwrap();
+        println!(
+            "{motion}: {name} {:.4} at {:+.1}°",
+            ratio.magnitude, ratio.phase_deg
+        );
+        ratio.clone()
+    };
+    assert_eq!(
+        named,
+        ["short period", "Dutch roll", "roll", "phugoid", "spiral"]
+    );
+    let turn = ratio("Dutch roll", "beta:psi");
+    assert!((turn.magnitude - 1.0).abs() < 0.3 && (turn.phase_deg.abs() - 180.0).abs() < 30.0);
+    assert!(ratio("phugoid", "u:alpha").magnitude > 10.0);
+    assert!(ratio("short period", "u:alpha").magnitude < 0.2);
+    assert!(ratio("roll", "psi:phi").magnitude < 0.2);
+    let phugoid = modes.iter().find(|mode| mode.motion == "phugoid").unwrap();
+    // Lanchester: period about 2^½ π U/g.
+    let lanchester = 2.0_f64.sqrt() * std::f64::consts::PI * number(&file["U"]) / 9.81;
+    println!(
+        "phugoid {:.1} s, Lanchester {lanchester:.1} s",
+        phugoid.period.unwrap()
+    );
+    assert!((phugoid.period.unwrap() / lanchester - 1.0).abs() < 0.2);
+    for rigid in &result.rigid_aircraft {
+        let own = modes
+            .iter()
+            .find(|mode| mode.motion == rigid.motion)
+            .unwrap();
+        let distance = (own.sigma - rigid.sigma).hypot(own.omega - rigid.omega);
+        println!(
+            "{} without acceleration terms: {distance:.1e} 1/s off",
+            rigid.motion
+        );
+        assert!(distance < 0.1 * own.sigma.hypot(own.omega));
+    }
+    assert_eq!(result.rigid_aircraft.len(), 5);
 }
 
 /// Columns of a comma-separated file by name, for the row of a body.

@@ -53,10 +53,12 @@ pub(crate) fn run(
             &rational
         }
     };
+    let parameters = system.modal_parameters();
     let sweep = Sweep {
         smooth: Some(smooth),
         method: method.into(),
         mixture: forces.mixture.as_deref(),
+        parameters: &parameters,
         ..Sweep::new(&system, &forces.conditions, &forces.table, &fit)
     };
     let bar = Bar::new(console.is_quiet());

@@ -52,6 +52,11 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
     session.write_json(&out.join("flutter.json"), &result)?;
     let write = |name: &str, text: String| session.write(&out.join(name), text);
     write("roots.csv", report::roots_csv(&result.methods))?;
+    if let Some(best) =
+        report::best(&result.methods).filter(|best| !best.flight_modes.is_empty())
+    {
+        write("flight_modes.csv", report::flight_csv(best, &result))?;
+    }
     let conditions = report::conditions(&file, &forces.conditions);
     let title = if file.case.title.is_empty() {
         &file.name
@@ -86,6 +91,6 @@ pub(crate) fn run(session: &Session, path: &Path, method: Method) -> Result<(), 
         facts: &facts,
     });
     write("report.html", page)?;
-    report::roots(console, &result.methods, &speeds);
+    report::roots(console, &result, &speeds);
     Ok(())
 }

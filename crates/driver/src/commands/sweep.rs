@@ -44,7 +44,7 @@ pub(crate) fn sweep(
     if let Some(json) = json {
         session.write_json(json, &result)?;
     }
-    report::roots(console, &result.methods, &speeds);
+    report::roots(console, &result, &speeds);
     Ok(())
 }
 

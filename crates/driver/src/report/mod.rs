@@ -3,6 +3,7 @@
 mod csv;
 mod date;
 mod derivatives;
+mod flight;
 mod forces;
 mod mode_pictures;
 mod page;
@@ -15,6 +16,7 @@ mod wake;
 pub(crate) use csv::roots_csv;
 pub(crate) use date::utc;
 pub(crate) use derivatives::{derivatives, derivatives_csv, document as derivatives_document};
+pub(crate) use flight::flight_csv;
 pub(crate) use forces::{facts, own_forces, sample, steady_forces, wake_jumps};
 pub(crate) use mode_pictures::{
     Named, Shown, flutter_pictures, mode_pictures, picture_file, structure_picture,

@@ -1,22 +1,15 @@
 //! Roots, crossings and the verdict in words.
 
+use super::flight;
 use crate::case::CaseFile;
 use crate::chain::conditions::Conditions;
 use crate::figures::three_digits;
 use crate::terminal::{Align, Console, Table};
-use fladder_stability::{Branch, Crossing, Kind, MethodResult, Methods};
-use std::f64::consts::{LN_2, TAU};
+use fladder_stability::{Crossing, Kind, MethodResult, Methods, SweepResult};
 
 /// Two crossings further apart than this in speed or frequency, relative, are
 /// not the same crossing.
 const SAME_CROSSING: f64 = 0.05;
-
-/// Strongly decaying motions with less reduced frequency than this are
-/// aperiodic: they lie on the branch cut of the forces, where digits mean
-/// little.
-const NEAR_CUT: f64 = 1e-3;
-/// Damping ratio above which a period has no meaning.
-const NEARLY_ONE: f64 = 0.99;
 
 /// What a sweep was made at, on one line.
 pub(crate) fn conditions(file: &CaseFile, conditions: &Conditions) -> String {
@@ -48,7 +41,8 @@ pub(crate) fn best(methods: &Methods) -> Option<&MethodResult> {
 }
 
 /// Crossings, agreement of the methods, rigid roots, and the verdict.
-pub(crate) fn roots(console: &Console, methods: &Methods, speeds: &[f64]) {
+pub(crate) fn roots(console: &Console, result: &SweepResult, speeds: &[f64]) {
+    let methods = &result.methods;
     let Some(best) = best(methods) else {
         return;
     };
@@ -69,7 +63,8 @@ pub(crate) fn roots(console: &Console, methods: &Methods, speeds: &[f64]) {
         }
         console.say(table.text());
     }
-    rigid_roots(console, best);
+    flight::sensitivities(console, best);
+    flight::flight_modes(console, best, result);
     completeness(console, best);
     console.say("");
     for line in verdicts(methods, speeds) {
@@ -171,59 +166,6 @@ fn kind(kind: Kind) -> &'static str {
         Kind::Rigid => "rigid",
         Kind::Elastic => "elastic",
     }
-}
-
-/// Motions of the whole aircraft at the ends of their branches.
-fn rigid_roots(console: &Console, best: &MethodResult) {
-    let mut table = Table::new(&[
-        ("rigid motion", Align::Left),
-        ("V [m/s]", Align::Right),
-        ("period [s]", Align::Right),
-        ("damping ratio", Align::Right),
-        ("amplitude", Align::Left),
-    ]);
-    for branch in best
-        .branches
-        .iter()
-        .filter(|branch| branch.kind == Kind::Rigid)
-    {
-        let last = branch.speed.len().saturating_sub(1);
-        let mut ends = vec![0, last];
-        ends.dedup();
-        for end in ends.into_iter().filter(|end| *end < branch.speed.len()) {
-            table.row(rigid_row(branch, end));
-        }
-    }
-    if !table.is_empty() {
-        console.say(table.text());
-    }
-}
-
-fn rigid_row(branch: &Branch, at: usize) -> [String; 5] {
-    let (sigma, omega) = (branch.sigma[at], branch.omega[at]);
-    let is_overdamped = branch.damping_ratio[at].is_some_and(|ratio| ratio > NEARLY_ONE);
-    let is_aperiodic = branch.k[at] < NEAR_CUT && is_overdamped;
-    let period = match omega {
-        _ if is_aperiodic => "–".to_owned(),
-        0.0 => "–".to_owned(),
-        _ => three_digits(TAU / omega),
-    };
-    let ratio = branch.damping_ratio[at].map_or_else(|| "–".to_owned(), |r| format!("{r:.4}"));
-    [
-        branch.name.clone(),
-        format!("{:.1}", branch.speed[at]),
-        period,
-        ratio,
-        amplitude(sigma),
-    ]
-}
-
-fn amplitude(sigma: f64) -> String {
-    if sigma == 0.0 {
-        return "neither grows nor decays".to_owned();
-    }
-    let word = if sigma > 0.0 { "doubles" } else { "halves" };
-    format!("{word} in {} s", three_digits(LN_2 / sigma.abs()))
 }
 
 fn completeness(console: &Console, best: &MethodResult) {

@@ -13,8 +13,8 @@ mod roots;
 
 pub use roots::Candidate;
 pub(crate) use roots::{
-    REAL_ROOT, ZERO_ROOT, candidates, candidates_of, free_modes, low_candidates, roots,
-    roots_near, within_cells,
+    REAL_ROOT, ZERO_ROOT, candidates, candidates_of, cell_eigenvalues, free_modes,
+    low_candidates, roots, roots_near, within_cells,
 };
 
 use faer::{Mat, c64};
