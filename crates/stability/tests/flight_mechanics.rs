@@ -189,7 +189,8 @@ fn jumbo_motions_have_their_names() {
     assert!(ratio("roll", "psi:phi").magnitude < 0.2);
     let phugoid = modes.iter().find(|mode| mode.motion == "phugoid").unwrap();
     // Lanchester: period about 2^½ π U/g.
-    let lanchester = 2.0_f64.sqrt() * std::f64::consts::PI * number(&file["U"]) / 9.81;
+    let lanchester =
+        2.0_f64.sqrt() * std::f64::consts::PI * number(&file["U"]) / number(&file["g"]);
     println!(
         "phugoid {:.1} s, Lanchester {lanchester:.1} s",
         phugoid.period.unwrap()
