@@ -131,6 +131,8 @@ pub struct SteadyState {
     pub lift_by_pressure: f64,
     /// Lowest pressure coefficient and the triangle it is on.
     pub lowest_pressure: (f64, usize),
+    /// Pressure coefficient of every triangle.
+    pub pressures: Vec<f32>,
     /// Force (m²) and moment (m³) as quadratic forms of the onset's components:
     /// entry [axis][a][b].
     pub force_form: OnsetForm,
@@ -204,6 +206,9 @@ impl SteadyReport<'_> {
             generalised_forms,
             lift_by_pressure: 0.0,
             lowest_pressure: self.lowest_pressure(),
+            pressures: (0..self.galerkin.n_triangles())
+                .map(|t| self.pressure(t) as f32)
+                .collect(),
             force_form,
             moment_form,
         };
@@ -358,9 +363,14 @@ impl SteadyReport<'_> {
             .sum()
     }
 
+    /// $c_p = 1 - |V|^2$ of a triangle.
+    fn pressure(&self, triangle: usize) -> f64 {
+        1.0 - self.onsets.velocity(triangle, self.stream).norm_squared()
+    }
+
     fn lowest_pressure(&self) -> (f64, usize) {
         (0..self.galerkin.n_triangles())
-            .map(|t| (1.0 - self.onsets.velocity(t, self.stream).norm_squared(), t))
+            .map(|t| (self.pressure(t), t))
             .fold(
                 (f64::INFINITY, 0),
                 |low, here| if here.0 < low.0 { here } else { low },

@@ -58,6 +58,19 @@ enum Command {
         #[arg(long, value_enum, default_value_t)]
         method: Method,
     },
+    /// Report folder again, from forces in the cache or from gaf.file
+    Report {
+        /// TOML file, or folder with case.toml
+        case: PathBuf,
+        /// Which eigenvalue methods run
+        #[arg(long, value_enum, default_value_t)]
+        method: Method,
+    },
+    /// Write a folder with a commented case and a small mesh to start from
+    New {
+        /// Folder to make; its name is that of the case
+        name: PathBuf,
+    },
     /// Compute the generalised aerodynamic forces into the cache
     Gaf {
         /// TOML file, or folder with case.toml
@@ -230,6 +243,8 @@ fn run(cli: Cli) -> Result<(), Failure> {
     let session = commands::Session { common, console };
     match cli.command {
         Command::Run { case, method } => commands::run(&session, &case, method)?,
+        Command::Report { case, method } => commands::report(&session, &case, method)?,
+        Command::New { name } => commands::new(&session, &name)?,
         Command::Gaf {
             case,
             json,
@@ -274,7 +289,9 @@ fn threads_failed(error: &rayon::ThreadPoolBuildError) -> Failure {
 /// A panic is a fault of the program; it is told like any other failure, with
 /// what a report needs.
 fn report_panics() {
-    std::panic::set_hook(Box::new(|panic| {
+    // Parallel work fails in many places at once: the first says enough.
+    let first = std::sync::Once::new();
+    std::panic::set_hook(Box::new(move |panic| {
         let place = panic.location().map_or_else(
             || "unknown".to_owned(),
             |at| format!("{}:{}", at.file(), at.line()),
@@ -285,7 +302,7 @@ fn report_panics() {
             "the computation stopped; files and cache entries written before are whole",
             "please report this with the case file and the command",
         );
-        complain(&failure.to_string());
+        first.call_once(|| complain(&failure.to_string()));
     }));
 }
 

@@ -29,6 +29,7 @@ mod gaf;
 mod hump;
 mod lane_lu;
 mod linalg;
+mod margin;
 mod mixture;
 mod p2;
 mod pencil;
@@ -60,6 +61,7 @@ pub use flight_modes::{FlightMode, FlyingBody, Ratio};
 pub use frame::{Frame, FrameError, to_body_frame};
 pub use gaf::{GafError, GafPoint, GafTable};
 pub use linalg::NoConvergence;
+pub use margin::Margin;
 pub use mixture::{Incidences, MachNumbers, Mixture};
 pub use p2::{
     Candidate, Cell, DEFAULT_DAMPING_LIMIT, FitError, FitReport, PiecewiseQuadratic, Region,

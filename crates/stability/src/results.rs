@@ -8,6 +8,7 @@ use faer::c64;
 
 use crate::count::Tally;
 use crate::flight_modes::FlightMode;
+use crate::margin::Margin;
 use crate::sensitivity::Sensitivity;
 
 /// Version of the layout.
@@ -24,6 +25,9 @@ pub struct SweepResult {
     pub semichord: f64,
     /// Outcome by method.
     pub methods: Methods,
+    /// Margin at a speed, of the most accurate method, where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub margin: Option<Margin>,
     /// The same motions of the rigid aircraft by its derivatives alone.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rigid_aircraft: Vec<FlightMode>,

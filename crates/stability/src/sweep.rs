@@ -236,6 +236,7 @@ impl Sweep<'_> {
             density: is_constant.then_some(density),
             semichord,
             methods,
+            margin: None,
             rigid_aircraft: run.rigid_aircraft()?,
         })
     }

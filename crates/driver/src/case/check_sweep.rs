@@ -82,6 +82,9 @@ pub(super) fn flight(case: &Case, at: &At<'_>) -> Checked {
 }
 
 pub(super) fn stability(case: &Case, swept: &Stability, at: &At<'_>) -> Checked {
+    if let Some(speed) = swept.margin_speed {
+        margin_speed(speed, swept, at)?;
+    }
     if let Some(altitudes) = &swept.altitude {
         return over_altitude(case, swept, altitudes, at);
     }
@@ -116,6 +119,24 @@ pub(super) fn stability(case: &Case, swept: &Stability, at: &At<'_>) -> Checked 
         ));
     }
     Ok(())
+}
+
+/// A margin is told at a speed within the sweep.
+fn margin_speed(speed: f64, swept: &Stability, at: &At<'_>) -> Checked {
+    let key = "stability.margin_speed";
+    at.positive(key, speed)?;
+    let speeds = swept.speed.as_ref().map(Speeds::values).unwrap_or_default();
+    let is_within = speeds.first().is_some_and(|first| *first <= speed)
+        && speeds.last().is_some_and(|last| speed <= *last);
+    if is_within {
+        return Ok(());
+    }
+    Err(at.refuse(
+        key,
+        format!("`{key}` is {speed} m/s, which is not within `stability.speed`"),
+        "damping at that speed is unknown",
+        "give a speed within those of the sweep, or sweep further",
+    ))
 }
 
 fn over_altitude(case: &Case, swept: &Stability, altitudes: &Range, at: &At<'_>) -> Checked {

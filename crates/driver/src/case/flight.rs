@@ -82,6 +82,8 @@ pub struct Stability {
     /// Whether the Mach number follows the speed.
     #[serde(default)]
     pub matched: bool,
+    /// Speed whose margin to instability is told, m/s.
+    pub margin_speed: Option<f64>,
     /// On which forces roots are refined.
     #[serde(default)]
     pub refine: Refine,

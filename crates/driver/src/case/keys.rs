@@ -102,6 +102,7 @@ pub(crate) const KEYS: &[&str] = &[
     "stability.altitude.to",
     "stability.altitude.count",
     "stability.matched",
+    "stability.margin_speed",
     "stability.refine",
 ];
 

@@ -8,6 +8,7 @@ use super::surrogate::Surrogate;
 use crate::case::{self, CaseFile, Refine};
 use crate::cli::Method;
 use crate::failure::Failure;
+use crate::report;
 use crate::terminal::{Bar, Console};
 use fladder_stability::{
     self as stability, Aerodynamics, DEFAULT_DAMPING_LIMIT, PartLoads, PiecewiseQuadratic,
@@ -26,8 +27,7 @@ pub(crate) fn run(
     method: Method,
     console: &Console,
 ) -> Result<SweepResult, Failure> {
-    let fit = PiecewiseQuadratic::centred(&forces.table, DEFAULT_DAMPING_LIMIT)
-        .map_err(|error| unfit(file, &error.to_string()))?;
+    let fit = fit(file, forces)?;
     console.notes(fit.notes());
     let system = complete_system(file, structure, forces, &fit, console)?;
     let (rational, notes) = smooth(&forces.table).map_err(|error| unfit(file, &error))?;
@@ -63,9 +63,24 @@ pub(crate) fn run(
     };
     let bar = Bar::new(console.is_quiet());
     bar.begin("sweeping speeds", sweep.steps() as u64);
-    let result = sweep.run(&bar).map_err(|error| not_swept(file, &error))?;
+    let mut result = sweep.run(&bar).map_err(|error| not_swept(file, &error))?;
     bar.clear();
+    let wanted = file
+        .case
+        .stability
+        .as_ref()
+        .and_then(|swept| swept.margin_speed);
+    result.margin = wanted.and_then(|speed| Some(report::best(&result.methods)?.margin(speed)));
     Ok(result)
+}
+
+/// The piecewise quadratic of the samples.
+///
+/// # Errors
+/// Samples that make none.
+pub(crate) fn fit(file: &CaseFile, forces: &Forces) -> Result<PiecewiseQuadratic, Failure> {
+    PiecewiseQuadratic::centred(&forces.table, DEFAULT_DAMPING_LIMIT)
+        .map_err(|error| unfit(file, &error.to_string()))
 }
 
 /// On which forces roots are to be refined.

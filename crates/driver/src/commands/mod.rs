@@ -4,6 +4,8 @@ mod cache;
 mod check;
 mod gaf;
 mod modes;
+mod new;
+mod results;
 mod run;
 mod sweep;
 
@@ -11,7 +13,8 @@ pub(crate) use cache::cache;
 pub(crate) use check::check;
 pub(crate) use gaf::gaf;
 pub(crate) use modes::{Wanted as WantedModes, modes};
-pub(crate) use run::run;
+pub(crate) use new::new;
+pub(crate) use run::{report, run};
 pub(crate) use sweep::sweep;
 
 use crate::cache::Cache;
@@ -23,7 +26,7 @@ use crate::cli::Common;
 use crate::failure::Failure;
 use crate::files;
 use crate::json;
-use crate::report;
+use crate::report as reports;
 use crate::terminal::{Console, warn};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -82,14 +85,19 @@ impl Session {
                 .say("no derivatives: they need area, span and chord in [reference]");
             return Ok(());
         };
-        report::derivatives(&self.console, file, &found);
+        reports::derivatives(&self.console, file, &found);
         let Some(out) = out else { return Ok(()) };
-        let document = report::derivatives_document(file, &found);
+        let document = reports::derivatives_document(file, &found);
         self.write_json(&out.join("derivatives.json"), &document)?;
         self.write(
             &out.join("derivatives.csv"),
-            report::derivatives_csv(&found),
+            reports::derivatives_csv(&found),
         )
+    }
+
+    /// Without a line for every file.
+    fn write_quietly(&self, path: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
+        files::write(path, content)
     }
 
     fn write(&self, path: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {

@@ -63,7 +63,8 @@ fn options(session: &Session) -> String {
     cache.chain(set).collect()
 }
 
-fn stored(
+/// The forces of the case from the cache; refused where they are not there.
+pub(super) fn stored(
     session: &Session,
     path: &Path,
     file: &CaseFile,

@@ -2,6 +2,7 @@
 //! surface.
 
 mod axis;
+mod curves;
 mod flutter_diagram;
 mod label;
 mod layout;
@@ -13,6 +14,7 @@ mod svg;
 
 pub(crate) use svg::escape;
 
+pub use curves::{Curve, Curves, Drawn, curves};
 pub use flutter_diagram::flutter_diagram;
 pub use mode_shape::{ModePicture, mode_shape};
 pub use root_locus::root_locus;

@@ -1,6 +1,7 @@
 //! What is printed and written about inputs and results.
 
 mod csv;
+mod curves;
 mod date;
 mod derivatives;
 mod flight;
@@ -14,15 +15,16 @@ mod surface;
 mod wake;
 
 pub(crate) use csv::roots_csv;
+pub(crate) use curves::{fit_picture, jump_picture};
 pub(crate) use date::utc;
 pub(crate) use derivatives::{derivatives, derivatives_csv, document as derivatives_document};
 pub(crate) use flight::flight_csv;
 pub(crate) use forces::{facts, own_forces, sample, steady_forces, wake_jumps};
 pub(crate) use mode_pictures::{
-    Named, Shown, flutter_pictures, mode_pictures, picture_file, structure_picture,
-    surface_picture,
+    Named, Shown, flutter_motions, mode_motions, mode_pictures, picture_file, stills,
+    structure_picture, surface_picture,
 };
-pub(crate) use page::{Page, page};
+pub(crate) use page::{Page, Wetted, page};
 pub(crate) use pictures::{EdgeEnd, ends, flow_pictures, pictures};
 pub(crate) use roots::{best, conditions, roots};
 pub(crate) use structure::{modes_of_case, modes_summary, structure, transfer};

@@ -24,28 +24,24 @@ impl Named {
     }
 }
 
+/// Name and frequency of a mode.
+fn titled(aircraft: &Aircraft, name: &str) -> String {
+    let models = aircraft.structure.model.iter();
+    let mut elastic = models.flat_map(|model| &model.elastic);
+    match elastic.find(|mode| mode.name == name) {
+        Some(mode) => format!("{name}, {:.2} Hz", mode.frequency_hz),
+        None => name.to_owned(),
+    }
+}
+
 /// Every mode on the surface that the case asks for, but for rigid ones.
 pub(crate) fn mode_pictures(aircraft: &Aircraft) -> Vec<Named> {
-    let frequency = |name: &str| {
-        let mut elastic = aircraft
-            .structure
-            .model
-            .iter()
-            .flat_map(|model| &model.elastic);
-        elastic
-            .find(|mode| mode.name == name)
-            .map(|mode| mode.frequency_hz)
-    };
     let modes = aircraft.asked_modes().iter();
     modes
         .filter(|mode| !mode.name.starts_with("rigid:"))
         .filter_map(|mode| {
-            let title = match frequency(&mode.name) {
-                Some(frequency) => format!("{}, {frequency:.2} Hz", mode.name),
-                None => mode.name.clone(),
-            };
             let picture = mode_shape(&ModePicture {
-                title: &title,
+                title: &titled(aircraft, &mode.name),
                 mesh: &aircraft.surface.mesh,
                 displacement: &mode.displacement,
             })?;
@@ -57,57 +53,87 @@ pub(crate) fn mode_pictures(aircraft: &Aircraft) -> Vec<Named> {
         .collect()
 }
 
-/// Crossings shown a quarter of a period later too: pictures make up most of a page.
-const TWICE: usize = 2;
+/// A motion of the surface: $\operatorname{Re}[(a + \mathrm ib)e^{\mathrm i\omega t}]$.
+#[derive(Clone, Debug)]
+pub(crate) struct Motion {
+    pub(crate) name: String,
+    /// $a$ of every vertex.
+    pub(crate) real: Vec<Vec3>,
+    /// $b$; empty where all moves in phase.
+    pub(crate) imaginary: Vec<Vec3>,
+}
 
-/// What moves at every crossing of the axis: the surface when the largest displacement is
-/// reached, and for the first ones a quarter of a period later.
-///
-/// u(t) = Re [Σ_j x_j u_j e^{iωt}], x the eigenvector with its phase such that the largest
-/// displacement is real.
-pub(crate) fn flutter_pictures(aircraft: &Aircraft, crossings: &[Crossing]) -> Vec<Named> {
+/// The modes that the case asks for, but for rigid ones.
+pub(crate) fn mode_motions(aircraft: &Aircraft) -> Vec<Motion> {
+    let modes = aircraft.asked_modes().iter();
+    modes
+        .filter(|mode| !mode.name.starts_with("rigid:"))
+        .map(|mode| Motion {
+            name: titled(aircraft, &mode.name),
+            real: mode.displacement.clone(),
+            imaginary: Vec::new(),
+        })
+        .collect()
+}
+
+/// What moves at every crossing of the axis, with its phase such that the largest
+/// displacement is real: $u(t) = \operatorname{Re}[\sum_jx_ju_je^{\mathrm i\omega t}]$, $x$ the
+/// eigenvector.
+pub(crate) fn flutter_motions(aircraft: &Aircraft, crossings: &[Crossing]) -> Vec<Motion> {
     let modes = aircraft.asked_modes();
-    let mesh = &aircraft.surface.mesh;
-    let mut pictures = Vec::new();
+    let vertices = aircraft.surface.mesh.vertices.len();
     let complete = crossings.iter().filter(|c| c.shape.len() <= modes.len());
-    for (number, crossing) in complete.enumerate() {
-        let part = |turn: c64| -> Vec<Vec3> {
-            (0..mesh.vertices.len())
-                .map(|v| {
-                    let of_mode =
-                        |(x, mode): (&c64, &SurfaceMode)| mode.displacement[v] * (x * turn).re;
-                    crossing.shape.iter().zip(modes).map(of_mode).sum()
-                })
-                .collect()
-        };
-        let one = c64::new(1.0, 0.0);
-        let quarter = c64::new(0.0, 1.0);
-        let (real, imaginary) = (part(one), part(-quarter));
-        let phase = real
-            .iter()
-            .zip(&imaginary)
-            .max_by(|a, b| size(a).total_cmp(&size(b)))
-            .map_or(0.0, |(re, im)| turned(re, im));
-        let aligned = c64::from_polar(1.0, -phase);
-        let phases = [
-            ("", aligned),
-            (", a quarter of a period later", aligned * quarter),
-        ];
-        let count = if number < TWICE { 2 } else { 1 };
-        for (when, turn) in phases.into_iter().take(count) {
-            let name = format!(
-                "{} at {:.2} m/s, {:.2} Hz{when}",
-                crossing.branch, crossing.speed, crossing.frequency_hz
-            );
-            let picture = mode_shape(&ModePicture {
-                title: &name,
-                mesh,
-                displacement: &part(turn),
-            });
-            pictures.extend(picture.map(|picture| Named { name, picture }));
-        }
-    }
-    pictures
+    complete
+        .map(|crossing| {
+            let part = |turn: c64| -> Vec<Vec3> {
+                (0..vertices)
+                    .map(|v| {
+                        let of_mode = |(x, mode): (&c64, &SurfaceMode)| {
+                            mode.displacement[v] * (x * turn).re
+                        };
+                        crossing.shape.iter().zip(modes).map(of_mode).sum()
+                    })
+                    .collect()
+            };
+            let quarter = c64::new(0.0, 1.0);
+            let (real, imaginary) = (part(c64::new(1.0, 0.0)), part(-quarter));
+            let phase = real
+                .iter()
+                .zip(&imaginary)
+                .max_by(|a, b| size(a).total_cmp(&size(b)))
+                .map_or(0.0, |(re, im)| turned(re, im));
+            let aligned = c64::from_polar(1.0, -phase);
+            Motion {
+                name: format!(
+                    "{} at {:.2} m/s, {:.2} Hz",
+                    crossing.branch, crossing.speed, crossing.frequency_hz
+                ),
+                real: part(aligned),
+                imaginary: part(-quarter * aligned),
+            }
+        })
+        .collect()
+}
+
+/// A motion when its largest displacement is reached, and a quarter of a period later.
+pub(crate) fn stills(aircraft: &Aircraft, motion: &Motion) -> Vec<Named> {
+    // Re[(a + ib) i] = −b.
+    let later: Vec<Vec3> = motion.imaginary.iter().map(|b| -b).collect();
+    [
+        ("", &motion.real),
+        (", a quarter of a period later", &later),
+    ]
+    .into_iter()
+    .filter_map(|(when, displacement)| {
+        let name = format!("{}{when}", motion.name);
+        let picture = mode_shape(&ModePicture {
+            title: &name,
+            mesh: &aircraft.surface.mesh,
+            displacement,
+        });
+        picture.map(|picture| Named { name, picture })
+    })
+    .collect()
 }
 
 fn size((re, im): &(&Vec3, &Vec3)) -> f64 {

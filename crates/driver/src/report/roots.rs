@@ -5,7 +5,7 @@ use crate::case::CaseFile;
 use crate::chain::conditions::Conditions;
 use crate::figures::three_digits;
 use crate::terminal::{Align, Console, Table};
-use fladder_stability::{Crossing, Kind, MethodResult, Methods, SweepResult};
+use fladder_stability::{Crossing, Kind, Margin, MethodResult, Methods, SweepResult};
 
 /// Two crossings further apart than this in speed or frequency, relative, are
 /// not the same crossing.
@@ -69,6 +69,38 @@ pub(crate) fn roots(console: &Console, result: &SweepResult, speeds: &[f64]) {
     console.say("");
     for line in verdicts(methods, speeds) {
         console.say(line);
+    }
+    if let Some(margin) = &result.margin {
+        console.say(margin_words(margin));
+    }
+}
+
+/// A margin in a sentence.
+pub(crate) fn margin_words(margin: &Margin) -> String {
+    let speed = three_digits(margin.speed);
+    let first = match (
+        margin.first_instability,
+        margin.speed_margin,
+        &margin.branch,
+    ) {
+        (Some(at), Some(part), Some(branch)) => format!(
+            "at {speed} m/s the margin of speed to the first instability ({branch}, {} m/s) is \
+             {:+.1} %",
+            three_digits(at),
+            100.0 * part
+        ),
+        _ => format!("at {speed} m/s: no instability within the sweep"),
+    };
+    match (
+        &margin.least_damped,
+        margin.damping_ratio,
+        margin.frequency_hz,
+    ) {
+        (Some(branch), Some(ratio), Some(frequency)) => format!(
+            "{first}; least damped there is {branch}, damping ratio {ratio:.4} at {} Hz",
+            three_digits(frequency)
+        ),
+        _ => first,
     }
 }
 

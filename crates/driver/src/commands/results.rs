@@ -1,0 +1,142 @@
+//! The report folder: computed by `run`, made again by `report`.
+
+use super::{Session, sweep};
+use crate::case::CaseFile;
+use crate::chain::aircraft::Aircraft;
+use crate::chain::conditions::Conditions;
+use crate::chain::forces::{self, Forces};
+use crate::chain::own_forces::{self, OwnForces};
+use crate::chain::structure::StructureData;
+use crate::chain::sweep as sweeping;
+use crate::cli::Method;
+use crate::failure::Failure;
+use crate::plot::{self, Subject};
+use crate::report;
+use std::path::Path;
+
+/// Where forces of a surface may come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Forcing {
+    /// Computed where the cache has none.
+    Computed,
+    /// The cache alone.
+    Stored,
+}
+
+/// Crossings whose pictures are for paper: two each.
+const STILLS: usize = 2;
+
+/// The whole chain into a report folder.
+pub(crate) fn results(
+    session: &Session,
+    path: &Path,
+    method: Method,
+    forcing: Forcing,
+) -> Result<(), Failure> {
+    let file = session.case(path)?;
+    let console = &session.console;
+    // Before hours of computing it is known whether there is a sweep at all.
+    let speeds = Conditions::of(&file)?.speeds();
+    let out = session.results_folder(&file);
+    let mut own = None;
+    let mut facts = vec![("case".to_owned(), path.display().to_string())];
+    let (structure, forces) = if forces::are_given(&file) {
+        let structure = StructureData::read(&file)?;
+        report::structure(console, &structure, None);
+        let forces = Forces::given(&file, &structure)?;
+        (structure, forces)
+    } else {
+        let (aircraft, stored) = surface_forces(session, path, &file, forcing)?;
+        for mode in report::mode_pictures(&aircraft) {
+            let name = report::picture_file(&mode.name);
+            session.write_quietly(&out.join("modes").join(name), &mode.picture)?;
+        }
+        facts.extend(report::facts(&aircraft, &stored));
+        session.derivatives(&file, &aircraft, &stored, Some(&out))?;
+        let assembled = forces::assemble(&file, &aircraft, stored)?;
+        session.write_json(&out.join("gaf.json"), &assembled.document)?;
+        let forces = Forces::own(&file, &aircraft, &assembled.own, &assembled.document)?;
+        let structure = aircraft.structure.clone();
+        own = Some((aircraft, assembled.own));
+        (structure, forces)
+    };
+    console.notes(&forces.notes);
+    let result = sweeping::run(&file, &structure, &forces, method, console)?;
+    session.write_json(&out.join("flutter.json"), &result)?;
+    let write = |name: &str, text: String| session.write(&out.join(name), text);
+    write("roots.csv", report::roots_csv(&result.methods))?;
+    let best = report::best(&result.methods);
+    if let Some(best) = best.filter(|best| !best.flight_modes.is_empty()) {
+        write("flight_modes.csv", report::flight_csv(best, &result))?;
+    }
+    let conditions = report::conditions(&file, &forces.conditions);
+    let title = if file.case.title.is_empty() {
+        &file.name
+    } else {
+        &file.case.title
+    };
+    let subject = Subject {
+        title,
+        conditions: &conditions,
+        methods: &result.methods,
+    };
+    let root_locus = plot::root_locus(&subject);
+    let flutter_diagram = plot::flutter_diagram(&subject);
+    write("root_locus.svg", root_locus.clone())?;
+    write("vgf.svg", flutter_diagram.clone())?;
+    let flutter = best.map_or(&[][..], |best| &best.flutter);
+    let mut curves = Vec::new();
+    let leading = flutter.first().map(|crossing| crossing.branch.as_str());
+    let fit = sweeping::fit(&file, &forces)?;
+    curves.extend(report::fit_picture(&forces.table, &fit, leading));
+    let (mut motions, mut stills) = (Vec::new(), Vec::new());
+    if let Some((aircraft, stored)) = &own {
+        curves.extend(report::jump_picture(&stored.stored.solution.steady));
+        motions = report::flutter_motions(aircraft, flutter);
+        for motion in motions.iter().take(STILLS) {
+            stills.extend(report::stills(aircraft, motion));
+        }
+        motions.extend(report::mode_motions(aircraft));
+    }
+    let page = report::page(&report::Page {
+        title,
+        conditions: &conditions,
+        result: &result,
+        speeds: &speeds,
+        root_locus: &root_locus,
+        flutter_diagram: &flutter_diagram,
+        curves: &curves,
+        surface: own.as_ref().map(|(aircraft, stored)| report::Wetted {
+            mesh: &aircraft.surface.mesh,
+            pressure: &stored.stored.solution.steady.pressures,
+        }),
+        motions: &motions,
+        stills: &stills,
+        facts: &facts,
+    });
+    write("report.html", page)?;
+    report::roots(console, &result, &speeds);
+    Ok(())
+}
+
+/// The surface with its modes, said, and its forces.
+fn surface_forces(
+    session: &Session,
+    path: &Path,
+    file: &CaseFile,
+    forcing: Forcing,
+) -> Result<(Aircraft, OwnForces), Failure> {
+    let console = &session.console;
+    let aircraft = Aircraft::read(file)?;
+    let own = match forcing {
+        Forcing::Computed => {
+            report::surface(console, &aircraft.surface);
+            report::structure(console, &aircraft.structure, aircraft.transfer.as_ref());
+            report::transfer(console, aircraft.transfer.as_ref());
+            own_forces::obtain(file, &aircraft, &session.open_cache(file), console)?
+        }
+        Forcing::Stored => sweep::stored(session, path, file, &aircraft)?,
+    };
+    report::own_forces(console, file, &aircraft, &own);
+    Ok((aircraft, own))
+}
