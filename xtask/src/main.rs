@@ -2,6 +2,7 @@
 //! `cargo xtask samples FOLDER`.
 
 mod bench;
+mod browser;
 mod mesh;
 mod samples;
 mod validate;
@@ -26,6 +27,8 @@ enum Chore {
     Bench(bench::Bench),
     /// Measure the accuracy of the aerodynamics on fine meshes and write docs/validation.md
     Validate(validate::Validate),
+    /// Drive a report page in a headless Chromium and print it
+    Browser(browser::Browser),
     /// Compare genuine result files below a folder with independent readers, node by node
     Samples(samples::Samples),
 }
@@ -40,6 +43,10 @@ fn main() -> ExitCode {
             Err(error) => refused(&error),
         },
         Chore::Bench(bench) => match bench.run() {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => refused(&error),
+        },
+        Chore::Browser(browser) => match browser.run() {
             Ok(()) => ExitCode::SUCCESS,
             Err(error) => refused(&error),
         },

@@ -86,7 +86,9 @@ pub(crate) fn results(
     write("vgf.svg", flutter_diagram.clone())?;
     let flutter = best.map_or(&[][..], |best| &best.flutter);
     let mut curves = Vec::new();
-    let leading = flutter.first().map(|crossing| crossing.branch.as_str());
+    let leading = flutter
+        .first()
+        .map(|crossing| crossing.branch.split('#').next().unwrap_or_default());
     let fit = sweeping::fit(&file, &forces)?;
     curves.extend(report::fit_picture(&forces.table, &fit, leading));
     let (mut motions, mut stills) = (Vec::new(), Vec::new());

@@ -100,7 +100,7 @@ pub(crate) fn page(page: &Page<'_>) -> String {
     table(&mut out, "Crossings", "words3", &head, &rows);
     if let Some(best) = best(methods) {
         let (head, rows) = flight_table(best, page.result);
-        table(&mut out, "Rigid motions", "words3", &head, &rows);
+        table(&mut out, "Rigid motions", "words3 motions", &head, &rows);
     }
     if page.surface.is_some() {
         out.push_str("<h2>What moves</h2>\n");
