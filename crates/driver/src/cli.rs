@@ -160,6 +160,8 @@ pub(crate) enum Method {
     P2,
     /// p-k
     Pk,
+    /// The g-method, and refined roots
+    G,
     /// All
     #[default]
     Both,

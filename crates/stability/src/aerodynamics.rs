@@ -38,6 +38,12 @@ pub trait Aerodynamics: Sync {
         None
     }
 
+    /// Whether the forces are evaluated anywhere rather than continued from
+    /// samples.
+    fn is_exact(&self) -> bool {
+        false
+    }
+
     /// The model as a combination of fixed real matrices, where it is one:
     /// then many points are evaluated together.
     fn expansion(&self) -> Option<&dyn Expansion> {
@@ -86,5 +92,9 @@ impl<F: Fn(c64) -> Mat<c64> + Sync> Aerodynamics for FromFunction<F> {
 
     fn q(&self, p: c64) -> Mat<c64> {
         (self.function)(p)
+    }
+
+    fn is_exact(&self) -> bool {
+        true
     }
 }

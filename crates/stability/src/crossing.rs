@@ -35,6 +35,11 @@ pub(crate) trait Resolver: Sync {
         vec![Vec::new(); tracks.len()]
     }
 
+    /// Whether the method's forces off the samples are continued from them.
+    fn continues_samples(&self) -> bool {
+        true
+    }
+
     /// Derivatives of a crossing with respect to the sweep's parameters.
     fn sensitivities(&self, _parameter: f64, _pair: &Eigenpair) -> Vec<Sensitivity> {
         Vec::new()

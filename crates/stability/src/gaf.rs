@@ -10,6 +10,10 @@ use faer::{Mat, c64};
 /// value) are one: text formats rarely keep more digits.
 const SAME_POINT: f64 = 1e-9;
 
+/// Distance in $g$ over which a continuation from the imaginary axis keeps four
+/// digits.
+pub const REACH: f64 = 0.05;
+
 /// An imaginary part at $k = 0$ above this fraction of the largest entry is
 /// said in the notes; rounding stays below.
 const REAL_TOLERANCE: f64 = 1e-10;
@@ -275,6 +279,14 @@ impl GafTable {
             samples: self.axis().cloned().map(Some).collect(),
             ..self.clone()
         }
+    }
+
+    /// Whether a root lies where forces are continued beyond the samples: above
+    /// the last $k$, or farther than [`REACH`] from the lines of $g$.
+    pub fn is_outside(&self, p: c64) -> bool {
+        let [low, high] = [self.g[0], self.g[self.g.len() - 1]];
+        let last = self.k[self.k.len() - 1];
+        p.im > last * (1.0 + SAME_POINT) || p.re < low - REACH || p.re > high + REACH
     }
 
     /// Applies a change to every sample, with its $p$.

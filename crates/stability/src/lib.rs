@@ -59,7 +59,7 @@ pub use eigenpair::Eigenpair;
 pub use flight::{Flight, Thrust, TrimLoads};
 pub use flight_modes::{FlightMode, FlyingBody, Ratio};
 pub use frame::{Frame, FrameError, to_body_frame};
-pub use gaf::{GafError, GafPoint, GafTable};
+pub use gaf::{GafError, GafPoint, GafTable, REACH};
 pub use linalg::NoConvergence;
 pub use margin::Margin;
 pub use mixture::{Incidences, MachNumbers, Mixture};

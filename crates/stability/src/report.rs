@@ -63,7 +63,7 @@ impl<'a> Reporter<'a> {
     ) -> MethodResult {
         let mut result = MethodResult::default();
         for number in 0..self.tracks.len() {
-            result.branches.push(self.branch(number));
+            result.branches.push(self.branch(number, resolver));
             if !self.continues_growth(number, events) {
                 result
                     .unstable_at_start
@@ -150,7 +150,7 @@ impl<'a> Reporter<'a> {
         listed
     }
 
-    fn branch(&self, number: usize) -> Branch {
+    fn branch(&self, number: usize, resolver: &dyn Resolver) -> Branch {
         let track = &self.tracks[number];
         let points = &self.points[track.first..=track.last()];
         let mut branch = Branch {
@@ -162,6 +162,14 @@ impl<'a> Reporter<'a> {
         for (point, root) in points.iter().zip(&track.roots) {
             let rate = point.airspeed / self.sweep.table.semichord();
             branch.push(point.airspeed, rate, root);
+        }
+        if resolver.continues_samples() {
+            let outside: Vec<bool> = track
+                .roots
+                .iter()
+                .map(|root| self.sweep.table.is_outside(root.p))
+                .collect();
+            branch.extrapolated = outside.contains(&true).then_some(outside);
         }
         let is_over_altitude = self.points.iter().any(|point| point.altitude.is_some());
         if is_over_altitude {

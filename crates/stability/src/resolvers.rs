@@ -10,7 +10,7 @@ use crate::flutter_point::{Local, Moving, change_along, flutter_point};
 use crate::hump::NEAR_AXIS;
 use crate::linalg::{apply, inner};
 use crate::pencil::Pencil;
-use crate::pk::PkProblem;
+use crate::pk::{PkForm, PkProblem};
 use crate::sensitivity::{Parameter, Sensitivity, quotient, root_sensitivity};
 use crate::spline::AxisForces;
 use crate::structure::Reduced;
@@ -38,6 +38,7 @@ impl Resolver for P2Resolver<'_> {
 pub(crate) struct PkResolver<'a> {
     pub(crate) sweep: &'a Sweep<'a>,
     pub(crate) forces: &'a dyn AxisForces,
+    pub(crate) form: PkForm,
 }
 
 impl Resolver for PkResolver<'_> {
@@ -46,7 +47,7 @@ impl Resolver for PkResolver<'_> {
         let problem = PkProblem {
             reduced: &reduced,
             forces: self.forces,
-            form: self.sweep.pk_form,
+            form: self.form,
         };
         nearest(&reduced, vec![problem.near(guess.p)?], guess)
     }
@@ -59,6 +60,10 @@ pub(crate) struct PolishedResolver<'a> {
 }
 
 impl Resolver for PolishedResolver<'_> {
+    fn continues_samples(&self) -> bool {
+        !self.smooth.is_exact()
+    }
+
     fn near(&self, parameter: f64, guess: &Eigenpair) -> Option<Eigenpair> {
         let reduced = reduced_at(self.sweep, parameter);
         crate::polish::polish(&reduced, self.smooth, guess.p, Some(&guess.right))

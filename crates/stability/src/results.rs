@@ -45,6 +45,9 @@ pub struct Methods {
     /// Oscillatory roots of the p-k problem.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pk: Option<MethodResult>,
+    /// Oscillatory roots of the g-method.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub g: Option<MethodResult>,
 }
 
 /// What one method found.
@@ -147,6 +150,10 @@ pub struct Branch {
     pub damping_ratio: Vec<Option<f64>>,
     /// $2\sigma/\omega$ of the V-g plot; none for a real root.
     pub structural_damping: Vec<Option<f64>>,
+    /// Whether each root lies where forces are continued from the samples
+    /// rather than between them; absent where none does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extrapolated: Option<Vec<bool>>,
     /// Altitude in m, in sweeps that have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub altitude: Option<Vec<f64>>,

@@ -42,6 +42,8 @@ pub enum Method {
     Unrefined,
     /// The refined roots alone.
     Refined,
+    /// The g-method, with the refined roots.
+    G,
     /// All.
     #[default]
     Both,
@@ -49,11 +51,11 @@ pub enum Method {
 
 impl Method {
     fn has_p2(self) -> bool {
-        matches!(self, Self::P2 | Self::Unrefined | Self::Both)
+        matches!(self, Self::P2 | Self::Unrefined | Self::Both | Self::G)
     }
 
     fn has_refined(self) -> bool {
-        matches!(self, Self::P2 | Self::Refined | Self::Both)
+        matches!(self, Self::P2 | Self::Refined | Self::Both | Self::G)
     }
 
     fn has_pk(self) -> bool {
@@ -198,6 +200,7 @@ impl Sweep<'_> {
             self.method.has_p2(),
             self.method.has_pk(),
             self.method.has_refined() && self.smooth.is_some(),
+            self.method == Method::G,
         ];
         runs.iter().filter(|runs| **runs).count() * self.schedule.count()
     }
@@ -225,7 +228,10 @@ impl Sweep<'_> {
             methods.polished = Some(run.polished(smooth)?);
         }
         if self.method.has_pk() {
-            methods.pk = Some(run.pk()?);
+            methods.pk = Some(run.pk(self.pk_form)?);
+        }
+        if self.method == Method::G {
+            methods.g = Some(run.pk(PkForm::GMethod)?);
         }
         let density = points[0].density;
         let is_constant = points
@@ -441,7 +447,7 @@ impl Run<'_> {
         })
     }
 
-    fn pk(&self) -> Result<MethodResult, SweepError> {
+    fn pk(&self, form: PkForm) -> Result<MethodResult, SweepError> {
         let sweep = self.sweep;
         let spline = AxisSpline::new(sweep.table).map_err(SweepError::Spline)?;
         let given = sweep.pk_forces.map(OnAxis);
@@ -453,12 +459,16 @@ impl Run<'_> {
             crate::pk::PkProblem {
                 reduced,
                 forces,
-                form: sweep.pk_form,
+                form,
             }
             .roots(sweep.table.k())
         })?;
         let (roots, zeros) = solved.into_iter().map(|s| (s.roots, s.zeros)).unzip();
-        let resolver = PkResolver { sweep, forces };
+        let resolver = PkResolver {
+            sweep,
+            forces,
+            form,
+        };
         let mut result = self.finish(
             &Solved {
                 roots,

@@ -82,11 +82,41 @@ pub struct Stability {
     /// Whether the Mach number follows the speed.
     #[serde(default)]
     pub matched: bool,
+    /// How p2 fits the samples.
+    #[serde(default)]
+    pub fit: Fit,
+    /// How p-k puts damping into the forces.
+    #[serde(default)]
+    pub pk: PkDamping,
     /// Speed whose margin to instability is told, m/s.
     pub margin_speed: Option<f64>,
     /// On which forces roots are refined.
     #[serde(default)]
     pub refine: Refine,
+}
+
+/// How p2 fits the samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Fit {
+    /// A quadratic spline along the imaginary axis, edges half-way between samples.
+    #[default]
+    Centred,
+    /// As the paper words it, for comparison.
+    Literal,
+    /// Rectangles of a grid in g and k.
+    Laplace,
+}
+
+/// How p-k puts damping into the forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PkDamping {
+    /// Q(ik) complex as it is.
+    #[default]
+    Complex,
+    /// Re Q + (p/k) Im Q.
+    Real,
 }
 
 /// On which forces roots are refined.

@@ -102,6 +102,8 @@ pub(crate) const KEYS: &[&str] = &[
     "stability.altitude.to",
     "stability.altitude.count",
     "stability.matched",
+    "stability.fit",
+    "stability.pk",
     "stability.margin_speed",
     "stability.refine",
 ];

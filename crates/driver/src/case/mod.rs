@@ -16,7 +16,7 @@ pub use aerodynamics::{
     AnalyticMode, Axis, ControlMode, Flow, Gaf, Mesh, Modes, Reference, Rotation, SolverChoice,
     Term, TrailingEdges, Wake, WakeDirection, WakeMode,
 };
-pub use flight::{Flight, Range, Refine, Speeds, Stability, Thrust, Trim};
+pub use flight::{Fit, Flight, PkDamping, Range, Refine, Speeds, Stability, Thrust, Trim};
 pub use one_or_many::OneOrMany;
 pub use source::Places;
 pub use structure::{

@@ -39,6 +39,10 @@ impl Aerodynamics for ExactForces<'_> {
         self.slopes.order()
     }
 
+    fn is_exact(&self) -> bool {
+        true
+    }
+
     /// On the branch cut the real part of the limit from above is taken; where
     /// $Q$ has no value every entry is NaN, which no iteration takes for a
     /// root.

@@ -5,14 +5,14 @@ use super::forces::Forces;
 use super::smooth::smooth;
 use super::structure::{StructureData, system};
 use super::surrogate::Surrogate;
-use crate::case::{self, CaseFile, Refine};
+use crate::case::{self, CaseFile, Fit, Refine};
 use crate::cli::Method;
 use crate::failure::Failure;
 use crate::report;
 use crate::terminal::{Bar, Console};
 use fladder_stability::{
     self as stability, Aerodynamics, DEFAULT_DAMPING_LIMIT, PartLoads, PiecewiseQuadratic,
-    Sweep, SweepError, SweepResult, System,
+    PkForm, REACH, Sweep, SweepError, SweepResult, System,
 };
 
 /// Sweeps the case.
@@ -28,6 +28,7 @@ pub(crate) fn run(
     console: &Console,
 ) -> Result<SweepResult, Failure> {
     let fit = fit(file, forces)?;
+    console.say(fit_words(&fit));
     console.notes(fit.notes());
     let system = complete_system(file, structure, forces, &fit, console)?;
     let (rational, notes) = smooth(&forces.table).map_err(|error| unfit(file, &error))?;
@@ -58,6 +59,7 @@ pub(crate) fn run(
         smooth: Some(smooth),
         method: method.into(),
         mixture: forces.mixture.as_deref(),
+        pk_form: pk_form(file),
         parameters: &parameters,
         ..Sweep::new(&system, &forces.conditions, &forces.table, &fit)
     };
@@ -79,8 +81,46 @@ pub(crate) fn run(
 /// # Errors
 /// Samples that make none.
 pub(crate) fn fit(file: &CaseFile, forces: &Forces) -> Result<PiecewiseQuadratic, Failure> {
-    PiecewiseQuadratic::centred(&forces.table, DEFAULT_DAMPING_LIMIT)
-        .map_err(|error| unfit(file, &error.to_string()))
+    let swept = file.case.stability.as_ref();
+    let table = &forces.table;
+    let made = match swept.map(|swept| swept.fit).unwrap_or_default() {
+        Fit::Centred => PiecewiseQuadratic::centred(table, DEFAULT_DAMPING_LIMIT),
+        Fit::Literal => PiecewiseQuadratic::literal(table, DEFAULT_DAMPING_LIMIT),
+        Fit::Laplace if table.g().len() > 1 => PiecewiseQuadratic::laplace(table),
+        Fit::Laplace => {
+            return Err(Failure::input(
+                "`stability.fit = \"laplace\"` with forces at g = 0 alone",
+                file.places.of("stability.fit"),
+                "rectangles off the axis need samples off the axis",
+                "give more values of gaf.g, for example [-0.2, -0.1, -0.04, 0.0, 0.04, 0.1, 0.2]",
+            ));
+        }
+    };
+    made.map_err(|error| unfit(file, &error.to_string()))
+}
+
+/// What the fit met, in words.
+fn fit_words(fit: &PiecewiseQuadratic) -> String {
+    let report = fit.report();
+    format!(
+        "  p2: {} cells, {} equations, rank {} of {}, misfit {:.0e}; largest jump between cells {:.0e} \
+         of max |Q| at g = 0, {:.0e} at g = -0.05",
+        fit.cells().len(),
+        report.equations,
+        report.rank,
+        report.unknowns,
+        report.residual,
+        fit.jump_at(0.0),
+        fit.jump_at(-REACH)
+    )
+}
+
+fn pk_form(file: &CaseFile) -> PkForm {
+    let swept = file.case.stability.as_ref();
+    match swept.map(|swept| swept.pk).unwrap_or_default() {
+        case::PkDamping::Complex => PkForm::Complex,
+        case::PkDamping::Real => PkForm::RealMatrices,
+    }
 }
 
 /// On which forces roots are to be refined.
@@ -195,6 +235,7 @@ impl From<Method> for stability::Method {
         match method {
             Method::P2 => Self::P2,
             Method::Pk => Self::Pk,
+            Method::G => Self::G,
             Method::Both => Self::Both,
         }
     }

@@ -4,7 +4,7 @@ use fladder_stability::{Kind, MethodResult, Methods};
 use std::fmt::Write;
 
 const HEADER: &str = "method,branch,kind,speed_m_s,g,k,sigma_1_s,omega_rad_s,frequency_hz,\
-                      damping_ratio,structural_damping";
+                      damping_ratio,structural_damping,extrapolated";
 
 /// One line a root, branch by branch; undefined values are empty.
 pub(crate) fn roots_csv(methods: &Methods) -> String {
@@ -13,6 +13,7 @@ pub(crate) fn roots_csv(methods: &Methods) -> String {
         ("p2", &methods.p2),
         ("polished", &methods.polished),
         ("pk", &methods.pk),
+        ("g", &methods.g),
     ];
     for (name, result) in named {
         if let Some(result) = result {
@@ -35,7 +36,7 @@ fn add(text: &mut String, method: &str, result: &MethodResult) {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
-                "{method},{name},{kind},{},{},{},{},{},{},{},{}",
+                "{method},{name},{kind},{},{},{},{},{},{},{},{},{}",
                 branch.speed[i],
                 branch.g[i],
                 branch.k[i],
@@ -44,6 +45,7 @@ fn add(text: &mut String, method: &str, result: &MethodResult) {
                 branch.frequency_hz[i],
                 optional(branch.damping_ratio[i]),
                 optional(branch.structural_damping[i]),
+                branch.extrapolated.as_ref().is_some_and(|list| list[i]),
             );
         }
     }

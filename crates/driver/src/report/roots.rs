@@ -5,7 +5,7 @@ use crate::case::CaseFile;
 use crate::chain::conditions::Conditions;
 use crate::figures::three_digits;
 use crate::terminal::{Align, Console, Table};
-use fladder_stability::{Crossing, Kind, Margin, MethodResult, Methods, SweepResult};
+use fladder_stability::{Crossing, Kind, Margin, MethodResult, Methods, REACH, SweepResult};
 
 /// Two crossings further apart than this in speed or frequency, relative, are
 /// not the same crossing.
@@ -38,6 +38,7 @@ pub(crate) fn best(methods: &Methods) -> Option<&MethodResult> {
         .as_ref()
         .or(methods.p2.as_ref())
         .or(methods.pk.as_ref())
+        .or(methods.g.as_ref())
 }
 
 /// Crossings, agreement of the methods, rigid roots, and the verdict.
@@ -65,7 +66,8 @@ pub(crate) fn roots(console: &Console, result: &SweepResult, speeds: &[f64]) {
     }
     flight::sensitivities(console, best);
     flight::flight_modes(console, best, result);
-    completeness(console, best);
+    completeness(console, best, speeds);
+    extrapolated(console, methods);
     console.say("");
     for line in verdicts(methods, speeds) {
         console.say(line);
@@ -114,6 +116,10 @@ pub(crate) fn verdicts(methods: &Methods, speeds: &[f64]) -> Vec<String> {
 
 /// Names of the columns, and a row a crossing: the first three are words.
 pub(crate) fn crossing_table(methods: &Methods) -> (Vec<String>, Vec<Vec<String>>) {
+    let (other, word) = match (&methods.pk, &methods.g) {
+        (None, Some(_)) => (&methods.g, "g-method"),
+        _ => (&methods.pk, "p-k"),
+    };
     let head = [
         "crossing",
         "branch",
@@ -123,10 +129,9 @@ pub(crate) fn crossing_table(methods: &Methods) -> (Vec<String>, Vec<Vec<String>
         "f [Hz]",
         "k",
         "p2 V [m/s]",
-        "p-k V [m/s]",
-        "p-k to p2",
     ];
-    let head = head.map(str::to_owned).to_vec();
+    let mut head = head.map(str::to_owned).to_vec();
+    head.extend([format!("{word} V [m/s]"), format!("{word} to p2")]);
     let mut rows = Vec::new();
     let Some(best) = best(methods) else {
         return (head, rows);
@@ -142,7 +147,7 @@ pub(crate) fn crossing_table(methods: &Methods) -> (Vec<String>, Vec<Vec<String>
     };
     let mut add = |word: &str, crossing: &Crossing, back: bool| {
         let p2 = beside(&methods.p2, crossing, back);
-        let pk = beside(&methods.pk, crossing, back);
+        let pk = beside(other, crossing, back);
         let speed =
             |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.3}"));
         let difference = p2.zip(pk).map_or_else(
@@ -200,15 +205,53 @@ fn kind(kind: Kind) -> &'static str {
     }
 }
 
-fn completeness(console: &Console, best: &MethodResult) {
-    let Some(complete) = &best.complete else {
+/// How many roots were counted in the region and found, with every defect.
+fn completeness(console: &Console, best: &MethodResult, speeds: &[f64]) {
+    let (Some(complete), Some(counts)) = (&best.complete, &best.count) else {
         return;
     };
-    let counted = complete.iter().filter(|met| **met).count();
-    if counted < complete.len() {
+    let met = complete.iter().filter(|met| **met).count();
+    let counted = || counts.iter().flatten().map(|count| count.counted);
+    if let (Some(least), Some(most)) = (counted().min(), counted().max()) {
         console.say(format!(
-            "  note: the number of roots was verified at {counted} of {} speeds",
+            "  roots in the region: {least} to {most} counted along its border; all of them found at \
+             {met} of {} speeds",
             complete.len()
+        ));
+    }
+    let missed = (0..complete.len()).filter(|speed| !complete[*speed]);
+    for speed in missed {
+        let at = speeds.get(speed).copied().unwrap_or_default();
+        let words = counts[speed].map_or_else(
+            || "not counted: the border runs through a root".to_owned(),
+            |count| format!("{} counted, {} found", count.counted, count.found),
+        );
+        console.say(format!("  note: at {} m/s {words}", three_digits(at)));
+    }
+}
+
+/// Roots whose forces are continued beyond the samples.
+fn extrapolated(console: &Console, methods: &Methods) {
+    let named = [
+        ("p2", &methods.p2),
+        ("refined", &methods.polished),
+        ("p-k", &methods.pk),
+        ("g-method", &methods.g),
+    ];
+    let told: Vec<String> = named
+        .into_iter()
+        .filter_map(|(name, result)| {
+            let lists = result.as_ref()?.branches.iter();
+            let all = lists.filter_map(|branch| branch.extrapolated.as_ref());
+            let count = all.flatten().filter(|outside| **outside).count();
+            (count > 0).then(|| format!("{count} of {name}"))
+        })
+        .collect();
+    if !told.is_empty() {
+        console.say(format!(
+            "  note: roots with forces continued beyond the samples (k above the last, or more \
+             than {REACH} from their g): {}; the JSON and roots.csv mark them as extrapolated",
+            told.join(", ")
         ));
     }
 }

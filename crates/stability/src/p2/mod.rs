@@ -21,7 +21,7 @@ use faer::{Mat, c64};
 
 use crate::aerodynamics::Aerodynamics;
 use crate::gaf::GafTable;
-use crate::linalg::NoConvergence;
+use crate::linalg::{NoConvergence, largest};
 
 /// Roots are sought for $|g|$ up to this where the samples lie on the
 /// imaginary axis alone: beyond it a quadratic continued from the axis is no
@@ -196,6 +196,23 @@ impl PiecewiseQuadratic {
             ],
             k_max: fold(&|cell| cell.k[1], f64::max),
         }
+    }
+
+    /// Largest jump of $Q$ between cells above each other, at one $g$, as a
+    /// fraction of the largest entry met there.
+    pub fn jump_at(&self, g: f64) -> f64 {
+        let (mut jump, mut scale) = (0.0_f64, f64::MIN_POSITIVE);
+        let holds = |cell: &&Cell| (cell.g[0]..=cell.g[1]).contains(&g);
+        let cells: Vec<&Cell> = self.cells.iter().filter(holds).collect();
+        for lower in &cells {
+            for upper in cells.iter().filter(|upper| upper.k[0] == lower.k[1]) {
+                let p = c64::new(g, lower.k[1]);
+                let (here, there) = (lower.q(p), upper.q(p));
+                scale = scale.max(largest(here.as_ref()));
+                jump = jump.max(largest((here - there).as_ref()));
+            }
+        }
+        jump / scale
     }
 
     /// $\mathrm dQ_{ij}/\mathrm dp$ at the origin, from the lowest cell.
