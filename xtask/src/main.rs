@@ -3,6 +3,7 @@
 
 mod bench;
 mod browser;
+mod exports;
 mod mesh;
 mod samples;
 mod validate;
@@ -29,6 +30,8 @@ enum Chore {
     Validate(validate::Validate),
     /// Drive a report page in a headless Chromium and print it
     Browser(browser::Browser),
+    /// Read the files of a run with NumPy and pyNastran and compare them with its JSON
+    Exports(exports::Exports),
     /// Compare genuine result files below a folder with independent readers, node by node
     Samples(samples::Samples),
 }
@@ -48,6 +51,14 @@ fn main() -> ExitCode {
         },
         Chore::Browser(browser) => match browser.run() {
             Ok(()) => ExitCode::SUCCESS,
+            Err(error) => refused(&error),
+        },
+        Chore::Exports(exports) => match exports.run() {
+            Ok(true) => ExitCode::SUCCESS,
+            Ok(false) => {
+                eprintln!("not all files say the same");
+                ExitCode::FAILURE
+            }
             Err(error) => refused(&error),
         },
         Chore::Validate(validate) => match validate.run() {

@@ -48,6 +48,16 @@ pub enum Frame {
     Body,
 }
 
+impl Frame {
+    /// The word of the file.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Inertial => "inertial",
+            Self::Body => "body",
+        }
+    }
+}
+
 /// $Q$ at one point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample {

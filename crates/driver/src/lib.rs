@@ -16,6 +16,7 @@ pub mod case;
 mod chain;
 pub mod cli;
 mod commands;
+mod export;
 pub mod failure;
 mod figures;
 pub mod files;

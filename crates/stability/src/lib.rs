@@ -75,6 +75,7 @@ pub use results::{
 pub use rigid::{Matrix6, RIGID_NAMES, RigidBody, RigidBodyError, RigidModes};
 pub use sensitivity::{Parameter, Sensitivity};
 pub use spline::AxisSpline;
+pub use state_space::StateMatrix;
 pub use structure::{FlightPath, OperatingPoint, Schedule, StructuralMatrices, Structure};
 pub use sweep::{Method, Progress, Search, Sweep, SweepError};
 pub use system::{DampingModel, PartLoads, System, SystemError};

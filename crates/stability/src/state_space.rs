@@ -11,12 +11,30 @@ use crate::linalg::{Lu, NoConvergence, eigenvalues_real};
 use crate::rational::{Pole, RationalFit};
 use crate::structure::{Hysteresis, Reduced};
 
+/// A state-space model of the aircraft at one flight condition.
+#[derive(Clone, Debug)]
+pub struct StateMatrix {
+    /// True airspeed in m/s.
+    pub airspeed: f64,
+    /// Air density in kg/m³.
+    pub density: f64,
+    /// $A$ of $\dot x = Ax$ in 1/s, $x = (\xi, (b/U)\dot\xi, w_1, …)$.
+    pub matrix: Mat<f64>,
+}
+
 /// Every root of the rational model with $\operatorname{Im}p\ge0$, without
 /// hysteretic damping.
 pub(crate) fn all_roots(
     reduced: &Reduced,
     fit: &RationalFit,
 ) -> Result<Vec<c64>, NoConvergence> {
+    let values = eigenvalues_real(state_matrix(reduced, fit).as_ref())?;
+    Ok(values.into_iter().filter(|value| value.im >= 0.0).collect())
+}
+
+/// The matrix whose eigenvalues are the roots $p$ of the rational model, without
+/// hysteretic damping.
+pub(crate) fn state_matrix(reduced: &Reduced, fit: &RationalFit) -> Mat<f64> {
     let order = reduced.order();
     let loads = |matrix: &Mat<f64>| {
         let real = reduced.real_loads(matrix);
@@ -48,8 +66,7 @@ pub(crate) fn all_roots(
         matrix[(i, order + i)] = 1.0;
     }
     fill_lags(&mut matrix, fit, order);
-    let values = eigenvalues_real(matrix.as_ref())?;
-    Ok(values.into_iter().filter(|value| value.im >= 0.0).collect())
+    matrix
 }
 
 /// The pair functions are $w+\bar w$ and $\mathrm i(w-\bar w)$: twice the real

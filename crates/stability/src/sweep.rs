@@ -22,12 +22,14 @@ use crate::p2::PiecewiseQuadratic;
 use crate::pencil::Pencil;
 use crate::pk::PkForm;
 use crate::quasi_steady::rigid_aircraft;
+use crate::rational::RationalFit;
 use crate::refined::RefinedRoots;
 use crate::report::Reporter;
 use crate::resolvers::{P2Resolver, PkResolver, PolishedResolver};
 use crate::results::{Count, MethodResult, Methods, SCHEMA, SweepResult};
 use crate::sensitivity::{Parameter, root_sensitivity};
 use crate::spline::{AxisForces, AxisSpline, OnAxis};
+use crate::state_space::{StateMatrix, state_matrix};
 use crate::structure::{OperatingPoint, Reduced, Schedule, Structure};
 use crate::track::{Station, Track, follow};
 
@@ -264,6 +266,21 @@ impl Sweep<'_> {
             zeros,
         };
         census.tally().map(Count::from)
+    }
+
+    /// The state-space model at a place of the sweep, of a rational model of the
+    /// forces; hysteretic damping is not in it.
+    pub fn state_matrix(&self, fit: &RationalFit, parameter: f64) -> StateMatrix {
+        let point = self.schedule.at(parameter);
+        let reduced = self.reduced(&point);
+        let in_p = state_matrix(&reduced, fit);
+        StateMatrix {
+            airspeed: point.airspeed,
+            density: point.density,
+            matrix: Mat::from_fn(in_p.nrows(), in_p.ncols(), |i, j| {
+                in_p[(i, j)] * reduced.rate
+            }),
+        }
     }
 
     /// $\partial p/\partial\theta$ of a root at a place of the sweep and fixed

@@ -12,8 +12,15 @@ use crate::report;
 use crate::terminal::{Bar, Console};
 use fladder_stability::{
     self as stability, Aerodynamics, DEFAULT_DAMPING_LIMIT, PartLoads, PiecewiseQuadratic,
-    PkForm, REACH, Sweep, SweepError, SweepResult, System,
+    PkForm, REACH, Schedule, StateMatrix, Sweep, SweepError, SweepResult, System,
 };
+
+/// Outcome of a sweep.
+pub(crate) struct Swept {
+    pub(crate) result: SweepResult,
+    /// State-space models at the first, the middle and the last point.
+    pub(crate) states: Vec<StateMatrix>,
+}
 
 /// Sweeps the case.
 ///
@@ -26,7 +33,7 @@ pub(crate) fn run(
     forces: &Forces,
     method: Method,
     console: &Console,
-) -> Result<SweepResult, Failure> {
+) -> Result<Swept, Failure> {
     let fit = fit(file, forces)?;
     console.say(fit_words(&fit));
     console.notes(fit.notes());
@@ -73,7 +80,14 @@ pub(crate) fn run(
         .as_ref()
         .and_then(|swept| swept.margin_speed);
     result.margin = wanted.and_then(|speed| Some(report::best(&result.methods)?.margin(speed)));
-    Ok(result)
+    let last = forces.conditions.count().saturating_sub(1);
+    let mut chosen = vec![0, last / 2, last];
+    chosen.dedup();
+    let states = chosen
+        .into_iter()
+        .map(|number| sweep.state_matrix(&rational, number as f64))
+        .collect();
+    Ok(Swept { result, states })
 }
 
 /// The piecewise quadratic of the samples.

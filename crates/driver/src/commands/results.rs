@@ -9,6 +9,7 @@ use crate::chain::own_forces::{self, OwnForces};
 use crate::chain::structure::StructureData;
 use crate::chain::sweep as sweeping;
 use crate::cli::Method;
+use crate::export;
 use crate::failure::Failure;
 use crate::plot::{self, Subject};
 use crate::report;
@@ -55,13 +56,17 @@ pub(crate) fn results(
         session.derivatives(&file, &aircraft, &stored, Some(&out))?;
         let assembled = forces::assemble(&file, &aircraft, stored)?;
         session.write_json(&out.join("gaf.json"), &assembled.document)?;
+        let archive = out.join("gaf.npz");
+        session.write(&archive, export::forces(&archive, &assembled.document)?)?;
+        session.write(&out.join("gaf.op4"), export::op4(&assembled.document))?;
         let forces = Forces::own(&file, &aircraft, &assembled.own, &assembled.document)?;
         let structure = aircraft.structure.clone();
         own = Some((aircraft, assembled.own));
         (structure, forces)
     };
     console.notes(&forces.notes);
-    let result = sweeping::run(&file, &structure, &forces, method, console)?;
+    let swept = sweeping::run(&file, &structure, &forces, method, console)?;
+    let result = swept.result;
     session.write_json(&out.join("flutter.json"), &result)?;
     let write = |name: &str, text: String| session.write(&out.join(name), text);
     write("roots.csv", report::roots_csv(&result.methods))?;
@@ -69,6 +74,14 @@ pub(crate) fn results(
     if let Some(best) = best.filter(|best| !best.flight_modes.is_empty()) {
         write("flight_modes.csv", report::flight_csv(best, &result))?;
     }
+    write("crossings.csv", report::crossings_csv(&result.methods))?;
+    if let Some(best) = best {
+        let text = export::summary(best, &speeds, file.case.flow.mach);
+        write("flutter_summary.f06", text)?;
+    }
+    let archive = out.join("state_space.npz");
+    let models = export::states(&archive, forces.table.modes(), &swept.states)?;
+    session.write(&archive, models)?;
     let conditions = report::conditions(&file, &forces.conditions);
     let title = if file.case.title.is_empty() {
         &file.name
@@ -95,6 +108,9 @@ pub(crate) fn results(
     if let Some((aircraft, stored)) = &own {
         curves.extend(report::jump_picture(&stored.stored.solution.steady));
         motions = report::flutter_motions(aircraft, flutter);
+        if let (Some(motion), Some(crossing)) = (motions.first(), flutter.first()) {
+            flutter_frames(session, &out, aircraft, motion, crossing.frequency_hz)?;
+        }
         for motion in motions.iter().take(STILLS) {
             stills.extend(report::stills(aircraft, motion));
         }
@@ -119,6 +135,25 @@ pub(crate) fn results(
     write("report.html", page)?;
     report::roots(console, &result, &speeds);
     Ok(())
+}
+
+/// The first crossing over its cycle, for ParaView.
+fn flutter_frames(
+    session: &Session,
+    out: &Path,
+    aircraft: &Aircraft,
+    motion: &report::Motion,
+    frequency_hz: f64,
+) -> Result<(), Failure> {
+    const NAME: &str = "flutter_mode";
+    for number in 0..export::FRAMES {
+        let path = out.join(format!("{NAME}_{number:02}.vtu"));
+        let bytes = export::frame(&aircraft.surface.mesh, motion, number)
+            .map_err(|error| Failure::io("write the file", &path, &error))?;
+        session.write_quietly(&path, bytes)?;
+    }
+    let text = export::collection(NAME, frequency_hz);
+    session.write(&out.join(format!("{NAME}.pvd")), text)
 }
 
 /// The surface with its modes, said, and its forces.

@@ -40,7 +40,7 @@ pub(crate) fn sweep(
         (aircraft.structure, forces)
     };
     console.notes(&forces.notes);
-    let result = sweeping::run(&file, &structure, &forces, method, console)?;
+    let result = sweeping::run(&file, &structure, &forces, method, console)?.result;
     if let Some(json) = json {
         session.write_json(json, &result)?;
     }

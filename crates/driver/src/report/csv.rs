@@ -51,6 +51,54 @@ fn add(text: &mut String, method: &str, result: &MethodResult) {
     }
 }
 
+/// Every crossing of every method: speed, frequency and what moves.
+pub(crate) fn crossings_csv(methods: &Methods) -> String {
+    let mut text =
+        "method,crossing,branch,kind,speed_m_s,dynamic_pressure_pa,frequency_hz,k\n".to_owned();
+    let named = [
+        ("p2", &methods.p2),
+        ("polished", &methods.polished),
+        ("pk", &methods.pk),
+        ("g", &methods.g),
+    ];
+    for (name, result) in named {
+        let Some(result) = result else { continue };
+        let kind = |kind: Kind| match kind {
+            Kind::Rigid => "rigid",
+            Kind::Elastic => "elastic",
+        };
+        for (word, list) in [
+            ("flutter", &result.flutter),
+            ("restabilised", &result.restabilised),
+        ] {
+            for crossing in list {
+                // Writing to a string cannot fail.
+                let _ = writeln!(
+                    text,
+                    "{name},{word},{},{},{},{},{},{}",
+                    quoted(&crossing.branch),
+                    kind(crossing.kind),
+                    crossing.speed,
+                    crossing.dynamic_pressure,
+                    crossing.frequency_hz,
+                    crossing.k
+                );
+            }
+        }
+        for divergence in &result.divergence {
+            let _ = writeln!(
+                text,
+                "{name},divergence,{},{},{},{},0,0",
+                quoted(&divergence.branch),
+                kind(divergence.kind),
+                divergence.speed,
+                divergence.dynamic_pressure
+            );
+        }
+    }
+    text
+}
+
 /// A name in quotes where it holds a separator.
 fn quoted(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) {

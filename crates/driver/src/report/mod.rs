@@ -14,14 +14,14 @@ mod structure;
 mod surface;
 mod wake;
 
-pub(crate) use csv::roots_csv;
+pub(crate) use csv::{crossings_csv, roots_csv};
 pub(crate) use curves::{fit_picture, jump_picture};
 pub(crate) use date::utc;
 pub(crate) use derivatives::{derivatives, derivatives_csv, document as derivatives_document};
 pub(crate) use flight::flight_csv;
 pub(crate) use forces::{facts, own_forces, sample, steady_forces, wake_jumps};
 pub(crate) use mode_pictures::{
-    Named, Shown, flutter_motions, mode_motions, mode_pictures, picture_file, stills,
+    Motion, Named, Shown, flutter_motions, mode_motions, mode_pictures, picture_file, stills,
     structure_picture, surface_picture,
 };
 pub(crate) use page::{Page, Wetted, page};

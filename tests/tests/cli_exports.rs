@@ -1,0 +1,136 @@
+//! Files of a run for other programs hold what its JSON holds.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "the helpers of these tests unwrap as the tests do"
+)]
+
+mod cli_support;
+
+use cli_support::{Place, wing_place};
+use npyz::npz::NpzArchive;
+use npyz::num_complex::Complex64;
+use serde_json::Value;
+use std::fs;
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+/// Forces of all points, row by row.
+fn forces(place: &Place) -> Vec<Vec<[f64; 2]>> {
+    let document: Value = serde_json::from_str(&place.read("out/gaf.json")).unwrap();
+    let points = document["points"].as_array().unwrap().iter();
+    points
+        .map(|point| {
+            let rows = point["q"].as_array().unwrap().iter();
+            rows.flat_map(|row| row.as_array().unwrap())
+                .map(|entry| [number(&entry[0]), number(&entry[1])])
+                .collect()
+        })
+        .collect()
+}
+
+#[test]
+fn files_for_other_programs_hold_the_same_forces() {
+    let place = wing_place();
+    place
+        .run(&["run", "wing.toml", "-q", "--out", "out"])
+        .code(0);
+    let expected = forces(&place);
+
+    let mut archive = NpzArchive::open(place.path("out/gaf.npz")).unwrap();
+    let q = archive.by_name("q").unwrap().unwrap();
+    assert_eq!(q.shape(), [expected.len() as u64, 2, 2]);
+    let values: Vec<Complex64> = q.into_vec().unwrap();
+    let flat: Vec<Complex64> = expected
+        .iter()
+        .flatten()
+        .map(|[re, im]| Complex64::new(*re, *im))
+        .collect();
+    assert_eq!(values, flat);
+    let k: Vec<f64> = archive.by_name("k").unwrap().unwrap().into_vec().unwrap();
+    assert_eq!(k, [0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.5]);
+
+    let matrices = fladder_modal::read_op4(&place.path("out/gaf.op4")).unwrap();
+    assert_eq!(matrices.len(), expected.len() + 1);
+    for (matrix, point) in matrices[1..].iter().zip(&expected) {
+        let mut full = vec![[0.0; 2]; 4];
+        for (row, column, value) in matrix.entries() {
+            full[2 * row + column] = value;
+        }
+        assert_eq!(&full, point);
+    }
+
+    // Two real roots or a pair a mode, and lags: as many as A has rows.
+    let mut archive = NpzArchive::open(place.path("out/state_space.npz")).unwrap();
+    let a = archive.by_name("A").unwrap().unwrap();
+    let shape = a.shape().to_vec();
+    assert_eq!((shape[0], shape[1]), (3, shape[2]));
+    assert_eq!(shape[1] % 2, 0);
+
+    let summary = place.read("out/flutter_summary.f06");
+    assert_eq!(
+        summary.matches("FLUTTER  SUMMARY").count(),
+        summary.matches("POINT =").count()
+    );
+    let frames = place.read("out/flutter_mode.pvd");
+    for name in frames.split('"').filter(|part| part.ends_with(".vtu")) {
+        assert!(place.path("out").join(name).is_file(), "{name}");
+    }
+    assert!(place.read("out/crossings.csv").lines().count() > 1);
+
+    // The same bytes again, by `report` from stored forces.
+    let files = [
+        "gaf.npz",
+        "gaf.op4",
+        "state_space.npz",
+        "flutter_summary.f06",
+        "roots.csv",
+    ];
+    let bytes = |name: &str| fs::read(place.path("out").join(name)).unwrap();
+    let before: Vec<Vec<u8>> = files.iter().map(|name| bytes(name)).collect();
+    place
+        .run(&["report", "wing.toml", "-q", "--out", "out"])
+        .code(0);
+    for (name, before) in files.iter().zip(before) {
+        assert!(bytes(name) == before, "{name}");
+    }
+}
+
+/// `report` computes nothing long, and says what to do.
+#[test]
+fn a_report_needs_stored_forces() {
+    let place = wing_place();
+    let text = place.refused(&["report", "wing.toml"]);
+    assert!(text.contains("fladder gaf wing.toml"), "{text}");
+}
+
+/// A new case runs as it is; nothing is written over.
+#[test]
+fn a_new_case_runs_as_it_is() {
+    let place = Place::new();
+    place.run(&["new", "first"]).code(0);
+    place.run(&["check", "first"]).code(0);
+    place.run(&["run", "first", "-q", "--out", "out"]).code(0);
+    let roots: Value = serde_json::from_str(&place.read("out/flutter.json")).unwrap();
+    assert!(
+        !roots["methods"]["polished"]["flutter"]
+            .as_array()
+            .unwrap()
+            .is_empty()
+    );
+    assert!(place.read("first/case.toml").contains("title = \"first\""));
+    let text = place.refused(&["new", "first"]);
+    assert!(text.contains("there already"), "{text}");
+    place.refused(&["new", ""]);
+    place
+        .run(&[
+            "sweep",
+            "first",
+            "-q",
+            "--set",
+            "stability.speed=[10.0, 20.0]",
+        ])
+        .code(0);
+}
