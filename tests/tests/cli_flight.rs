@@ -10,7 +10,7 @@ mod cli_support;
 use cli_support::{Place, obj, small_wing};
 use serde_json::Value;
 
-const SHARED: &str = r#"[reference]
+const SHARED: &str = r"[reference]
 semichord = 0.5
 [structure.rigid_body]
 mass = 60.0
@@ -19,7 +19,7 @@ inertia = { xx = 50.0, yy = 20.0, zz = 65.0, xz = 3.0 }
 [flight]
 parasite_drag_area = 0.03
 induced_drag_factor = 0.02
-"#;
+";
 
 /// A wing with forces of its own, the wake along x.
 fn own_case() -> String {

@@ -74,14 +74,14 @@ pub(super) fn own(
             .q_at_each(c64::new(0.0, 0.0), &flows)
             .map_err(|error| not_evaluated(&error))?;
         let sum = |q: &Mat<c64>, row: usize| controls.iter().map(|&j| q[(row, j)].re).sum();
-        let mut loads = each.iter().map(|q| rows.loads(&|row| sum(q, row)));
-        Some(std::array::from_fn(|_| loads.next().unwrap_or_default()))
+        let loads = each.iter().map(|q| rows.loads(&|row| sum(q, row)));
+        Some(loads.collect())
     };
     Ok(Some(Trim {
         weight: weight(flight, body),
         loads: Loads::Everywhere {
             nodes,
-            steady,
+            steady: steady.to_vec(),
             control,
         },
     }))

@@ -41,8 +41,8 @@ pub(crate) enum Loads {
     /// Steady flow and, where there is one, the control at five incidences.
     Everywhere {
         nodes: Incidences,
-        steady: [PlaneLoads; 5],
-        control: Option<[PlaneLoads; 5]>,
+        steady: Vec<PlaneLoads>,
+        control: Option<Vec<PlaneLoads>>,
     },
     /// Lift per unit dynamic pressure at one incidence, and its slope.
     Line { alpha: f64, lift: f64, slope: f64 },
@@ -137,7 +137,7 @@ impl Trim {
     }
 }
 
-fn mixed(nodes: &Incidences, loads: &[PlaneLoads; 5], alpha: f64) -> PlaneLoads {
+fn mixed(nodes: &Incidences, loads: &[PlaneLoads], alpha: f64) -> PlaneLoads {
     let point = OperatingPoint {
         alpha,
         ..OperatingPoint::new(1.0, 1.0)
@@ -182,8 +182,8 @@ mod tests {
             weight: 180.0,
             loads: Loads::Everywhere {
                 nodes,
-                steady,
-                control: Some(control),
+                steady: steady.to_vec(),
+                control: Some(control.to_vec()),
             },
         };
         for pressure in [300.0, 1000.0, 5000.0] {

@@ -95,11 +95,6 @@ impl Session {
         )
     }
 
-    /// Without a line for every file.
-    fn write_quietly(&self, path: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
-        files::write(path, content)
-    }
-
     fn write(&self, path: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
         files::write(path, content)?;
         self.console.say(format!("wrote {}", path.display()));

@@ -11,6 +11,7 @@ use crate::chain::sweep as sweeping;
 use crate::cli::Method;
 use crate::export;
 use crate::failure::Failure;
+use crate::files;
 use crate::plot::{self, Subject};
 use crate::report;
 use std::path::Path;
@@ -50,7 +51,7 @@ pub(crate) fn results(
         let (aircraft, stored) = surface_forces(session, path, &file, forcing)?;
         for mode in report::mode_pictures(&aircraft) {
             let name = report::picture_file(&mode.name);
-            session.write_quietly(&out.join("modes").join(name), &mode.picture)?;
+            files::write(&out.join("modes").join(name), &mode.picture)?;
         }
         facts.extend(report::facts(&aircraft, &stored));
         session.derivatives(&file, &aircraft, &stored, Some(&out))?;
@@ -150,7 +151,7 @@ fn flutter_frames(
         let path = out.join(format!("{NAME}_{number:02}.vtu"));
         let bytes = export::frame(&aircraft.surface.mesh, motion, number)
             .map_err(|error| Failure::io("write the file", &path, &error))?;
-        session.write_quietly(&path, bytes)?;
+        files::write(&path, bytes)?;
     }
     let text = export::collection(NAME, frequency_hz);
     session.write(&out.join(format!("{NAME}.pvd")), text)

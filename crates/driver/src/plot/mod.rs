@@ -88,7 +88,7 @@ mod tests {
         Methods {
             polished: Some(result.clone()),
             pk: Some(result),
-            p2: None,
+            ..Methods::default()
         }
     }
 

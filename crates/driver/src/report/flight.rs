@@ -113,7 +113,7 @@ pub(crate) fn flight_modes(console: &Console, best: &MethodResult, result: &Swee
         return;
     }
     let aligned = |(i, name): (usize, &String)| {
-        let is_words = i < 3 || i > 5;
+        let is_words = !(3..=5).contains(&i);
         let align = if is_words { Align::Left } else { Align::Right };
         (name.clone(), align)
     };
