@@ -15,6 +15,10 @@ use fladder_stability::{
     PkForm, REACH, Schedule, StateMatrix, Sweep, SweepError, SweepResult, System,
 };
 
+/// Misfit of the rational model, as a part of the largest entry, above which p2, which
+/// meets the samples, may be the better method.
+const ROUGH: f64 = 1e-3;
+
 /// Outcome of a sweep.
 pub(crate) struct Swept {
     pub(crate) result: SweepResult,
@@ -58,6 +62,17 @@ pub(crate) fn run(
         }
         _ => {
             console.notes(&notes);
+            console.say(format!(
+                "  roots are refined on a rational model of the samples, {} poles, misfit {:.0e}",
+                rational.poles().len(),
+                rational.residual()
+            ));
+            if rational.residual() > ROUGH {
+                console.say(
+                    "  warning: the samples are too few or too rough for the refined roots to be \
+                     better than p2: compare the two, and give more values of k",
+                );
+            }
             &rational
         }
     };
