@@ -138,7 +138,7 @@ mod tests {
         let text = roots_csv(&methods);
         assert_eq!(
             text.lines().nth(1),
-            Some("pk,\"a,\"\"b\"\"\",elastic,10,-0.1,0,-2,0,0,1,")
+            Some("pk,\"a,\"\"b\"\"\",elastic,10,-0.1,0,-2,0,0,1,,false")
         );
     }
 }
