@@ -104,6 +104,9 @@ pub(crate) struct Motion {
 /// Share of elastic modes above which a rigid motion has no name of its own.
 const COUPLED: f64 = 0.25;
 
+/// An amplitude below this part of the largest is rounding, and divides nothing.
+const ROUNDING: f64 = 1e-9;
+
 /// Damping ratio above which an oscillation is no more than a bent decay.
 const OVERDAMPED: f64 = 0.5;
 
@@ -167,7 +170,12 @@ impl Motion {
                 ("u:theta", a.u, a.theta),
             ]
         };
-        let pairs = pairs.into_iter().filter(|(_, _, below)| below.norm() > 0.0);
+        let largest = [a.u, a.alpha, a.theta, a.beta, a.phi, a.psi]
+            .iter()
+            .map(|amplitude| amplitude.norm())
+            .fold(0.0, f64::max);
+        let is_there = |below: c64| below.norm() > ROUNDING * largest;
+        let pairs = pairs.into_iter().filter(|(_, _, below)| is_there(*below));
         pairs
             .map(|(name, above, below)| {
                 let quotient = above / below;
