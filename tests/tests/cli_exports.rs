@@ -124,7 +124,7 @@ fn a_new_case_runs_as_it_is() {
     assert!(place.read("first/case.toml").contains("title = \"first\""));
     let text = place.refused(&["new", "first"]);
     assert!(text.contains("there already"), "{text}");
-    place.refused(&["new", ""]);
+    place.refused(&["new", "a\"b"]);
     place
         .run(&[
             "sweep",

@@ -6,6 +6,7 @@ mod browser;
 mod exports;
 mod mesh;
 mod samples;
+mod scaneagle;
 mod validate;
 
 use std::process::ExitCode;
@@ -32,6 +33,9 @@ enum Chore {
     Browser(browser::Browser),
     /// Read the files of a run with NumPy and pyNastran and compare them with its JSON
     Exports(exports::Exports),
+    /// Make the surface of the ScanEagle-like aircraft from its table of dimensions
+    #[command(subcommand)]
+    Scaneagle(scaneagle::ScanEagle),
     /// Compare genuine result files below a folder with independent readers, node by node
     Samples(samples::Samples),
 }
@@ -58,6 +62,13 @@ fn main() -> ExitCode {
             Ok(false) => {
                 eprintln!("not all files say the same");
                 ExitCode::FAILURE
+            }
+            Err(error) => refused(&error),
+        },
+        Chore::Scaneagle(chore) => match chore.run() {
+            Ok(said) => {
+                println!("{said}");
+                ExitCode::SUCCESS
             }
             Err(error) => refused(&error),
         },

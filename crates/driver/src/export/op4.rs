@@ -1,8 +1,8 @@
 //! Forces as Nastran OUTPUT4, ASCII with 16 digits.
 //!
 //! `GK` (points × 2) holds g and k, `Q1` … one complex matrix a point (type 4, double
-//! precision). Columns are written in full: column number, first row, number of words, then
-//! three numbers a line (MSC Nastran, *DMAP Programmer's Guide*, OUTPUT4).
+//! precision). Columns are written in full: column number, first row, how many numbers, then
+//! three of them a line (MSC Nastran, *DMAP Programmer's Guide*, OUTPUT4).
 
 use crate::gaf_json::Document;
 use std::fmt::Write;
@@ -46,8 +46,7 @@ fn matrix(text: &mut String, name: &str, kind: usize, rows: usize, columns: &[Ve
         columns.len()
     );
     for (number, column) in columns.iter().enumerate() {
-        // A double precision number is two words.
-        let _ = writeln!(text, "{:8}{:8}{:8}", number + 1, 1, 2 * column.len());
+        let _ = writeln!(text, "{:8}{:8}{:8}", number + 1, 1, column.len());
         numbers(text, column);
     }
     let _ = writeln!(text, "{:8}{:8}{:8}", columns.len() + 1, 1, 1);
