@@ -191,7 +191,8 @@ impl Parameters {
             ),
         ];
         for (name, values) in ordered {
-            if values.windows(2).any(|pair| !(pair[0] < pair[1])) {
+            let ascends = values.windows(2).all(|pair| pair[0] < pair[1]);
+            if !ascends {
                 return Err(ParameterError::Value(format!(
                     "{name}: {values:?} must ascend"
                 )));

@@ -21,7 +21,7 @@ fn the_meshes_of_the_case_come_out_again() {
         let made = surface(&parameters, parameters.size[size]).unwrap();
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../meshes");
         let there =
-            read_mesh(&Path::new(file).join(format!("scaneagle_{size}.msh")), 1.0).unwrap();
+            read_mesh(Path::new(file).join(format!("scaneagle_{size}.msh")), 1.0).unwrap();
         assert_eq!(made.vertices.len(), there.vertices.len());
         assert_eq!(made.triangles.len(), there.triangles.len());
         let apart = made
@@ -117,5 +117,6 @@ fn impossible_dimensions_are_named() {
     assert!(refused("elevon = [0.72, 1.40]", "elevon = [1.40, 0.72]").contains("elevon"));
     assert!(refused("chord = 12 ", "chord = 3 ").contains("size.3k"));
     assert!(refused("radius = 0.089\n", "radius = 0.01\n").contains("nose_cap"));
-    assert!(refused("radius = 0.089\n", "radius = 0.21\n").contains("blend_to"));
+    assert!(refused("radius = 0.089\n", "radius = 0.23\n").contains("blend_to"));
+    assert!(refused("radius = 0.089\n", "radius = 0.21\n").contains("pierce"));
 }
