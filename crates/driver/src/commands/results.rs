@@ -76,6 +76,9 @@ pub(crate) fn results(
         write("flight_modes.csv", report::flight_csv(best, &result))?;
     }
     write("crossings.csv", report::crossings_csv(&result.methods))?;
+    if let Some(text) = best.and_then(|best| report::counts_csv(best, &speeds)) {
+        write("counts.csv", text)?;
+    }
     if let Some(best) = best {
         let text = export::summary(best, &speeds, file.case.flow.mach);
         write("flutter_summary.f06", text)?;

@@ -6,12 +6,12 @@ use crate::failure::Failure;
 use crate::gaf_json::Document;
 use faer::Mat;
 use fladder_stability::StateMatrix;
-use npyz::npz::NpzWriter;
-use npyz::zip::write::FileOptions;
-use npyz::zip::{CompressionMethod, DateTime};
-use npyz::{AutoSerialize, DType, WriterBuilder};
+use npyz::npz::file_name_from_array_name;
+use npyz::{AutoSerialize, DType, WriteOptions, WriterBuilder};
 use std::io::Cursor;
 use std::path::Path;
+use zip::write::FileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
 
 /// Stored, not packed, with the date of the format's beginning.
 fn plain() -> FileOptions {
@@ -20,11 +20,16 @@ fn plain() -> FileOptions {
         .last_modified_time(DateTime::default())
 }
 
-struct Archive(NpzWriter<Cursor<Vec<u8>>>);
+struct Archive(ZipWriter<Cursor<Vec<u8>>>);
 
 impl Archive {
     fn new() -> Self {
-        Self(NpzWriter::new(Cursor::new(Vec::new())))
+        Self(ZipWriter::new(Cursor::new(Vec::new())))
+    }
+
+    fn begin(&mut self, name: &str) -> std::io::Result<()> {
+        let file = file_name_from_array_name(name);
+        self.0.start_file(file, plain()).map_err(Into::into)
     }
 
     fn add<T: AutoSerialize>(
@@ -33,11 +38,11 @@ impl Archive {
         shape: &[u64],
         values: impl IntoIterator<Item = T>,
     ) -> std::io::Result<()> {
-        let mut array = self
-            .0
-            .array(name, plain())?
+        self.begin(name)?;
+        let mut array = WriteOptions::new()
             .default_dtype()
             .shape(shape)
+            .writer(&mut self.0)
             .begin_nd()?;
         array.extend(values)?;
         array.finish()
@@ -49,11 +54,11 @@ impl Archive {
         let text_type = format!("|S{length}")
             .parse()
             .map_err(std::io::Error::other)?;
-        let mut array = self
-            .0
-            .array::<[u8]>(name, plain())?
+        self.begin(name)?;
+        let mut array = WriteOptions::<[u8]>::new()
             .dtype(DType::Plain(text_type))
             .shape(&[texts.len() as u64])
+            .writer(&mut self.0)
             .begin_nd()?;
         for text in texts {
             array.push(text.as_bytes())?;
@@ -62,7 +67,7 @@ impl Archive {
     }
 
     fn finish(mut self) -> std::io::Result<Vec<u8>> {
-        Ok(self.0.zip_writer().finish()?.into_inner())
+        Ok(self.0.finish()?.into_inner())
     }
 }
 

@@ -51,6 +51,22 @@ fn add(text: &mut String, method: &str, result: &MethodResult) {
     }
 }
 
+/// Roots counted along the border of the region and found, speed by speed; empty where the
+/// border runs through a root.
+pub(crate) fn counts_csv(result: &MethodResult, speeds: &[f64]) -> Option<String> {
+    let (complete, counts) = (result.complete.as_ref()?, result.count.as_ref()?);
+    let mut text = "speed_m_s,counted,found,complete\n".to_owned();
+    for ((speed, count), met) in speeds.iter().zip(counts).zip(complete) {
+        let [counted, found] = count.map_or_else(
+            || [String::new(), String::new()],
+            |count| [count.counted.to_string(), count.found.to_string()],
+        );
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{speed},{counted},{found},{met}");
+    }
+    Some(text)
+}
+
 /// Every crossing of every method: speed, frequency and what moves.
 pub(crate) fn crossings_csv(methods: &Methods) -> String {
     let mut text =

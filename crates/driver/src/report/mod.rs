@@ -14,7 +14,7 @@ mod structure;
 mod surface;
 mod wake;
 
-pub(crate) use csv::{crossings_csv, roots_csv};
+pub(crate) use csv::{counts_csv, crossings_csv, roots_csv};
 pub(crate) use curves::{fit_picture, jump_picture};
 pub(crate) use date::utc;
 pub(crate) use derivatives::{derivatives, derivatives_csv, document as derivatives_document};
