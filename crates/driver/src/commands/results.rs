@@ -67,25 +67,10 @@ pub(crate) fn results(
     };
     console.notes(&forces.notes);
     let swept = sweeping::run(&file, &structure, &forces, method, console)?;
-    let result = swept.result;
-    session.write_json(&out.join("flutter.json"), &result)?;
+    tables(session, &out, &file, &forces, &swept, &speeds)?;
+    let result = &swept.result;
     let write = |name: &str, text: String| session.write(&out.join(name), text);
-    write("roots.csv", report::roots_csv(&result.methods))?;
     let best = report::best(&result.methods);
-    if let Some(best) = best.filter(|best| !best.flight_modes.is_empty()) {
-        write("flight_modes.csv", report::flight_csv(best, &result))?;
-    }
-    write("crossings.csv", report::crossings_csv(&result.methods))?;
-    if let Some(text) = best.and_then(|best| report::counts_csv(best, &speeds)) {
-        write("counts.csv", text)?;
-    }
-    if let Some(best) = best {
-        let text = export::summary(best, &speeds, file.case.flow.mach);
-        write("flutter_summary.f06", text)?;
-    }
-    let archive = out.join("state_space.npz");
-    let models = export::states(&archive, forces.table.modes(), &swept.states)?;
-    session.write(&archive, models)?;
     let conditions = report::conditions(&file, &forces.conditions);
     let title = if file.case.title.is_empty() {
         &file.name
@@ -123,7 +108,7 @@ pub(crate) fn results(
     let page = report::page(&report::Page {
         title,
         conditions: &conditions,
-        result: &result,
+        result,
         speeds: &speeds,
         root_locus: &root_locus,
         flutter_diagram: &flutter_diagram,
@@ -137,8 +122,37 @@ pub(crate) fn results(
         facts: &facts,
     });
     write("report.html", page)?;
-    report::roots(console, &result, &speeds);
+    report::roots(console, result, &speeds);
     Ok(())
+}
+
+/// Roots and what follows from them as files.
+fn tables(
+    session: &Session,
+    out: &Path,
+    file: &CaseFile,
+    forces: &Forces,
+    swept: &sweeping::Swept,
+    speeds: &[f64],
+) -> Result<(), Failure> {
+    let result = &swept.result;
+    session.write_json(&out.join("flutter.json"), result)?;
+    let write = |name: &str, text: String| session.write(&out.join(name), text);
+    write("roots.csv", report::roots_csv(&result.methods))?;
+    write("crossings.csv", report::crossings_csv(&result.methods))?;
+    if let Some(best) = report::best(&result.methods) {
+        if !best.flight_modes.is_empty() {
+            write("flight_modes.csv", report::flight_csv(best, result))?;
+        }
+        if let Some(text) = report::counts_csv(best, speeds) {
+            write("counts.csv", text)?;
+        }
+        let text = export::summary(best, speeds, file.case.flow.mach);
+        write("flutter_summary.f06", text)?;
+    }
+    let archive = out.join("state_space.npz");
+    let models = export::states(&archive, forces.table.modes(), &swept.states)?;
+    session.write(&archive, models)
 }
 
 /// The first crossing over its cycle, for ParaView.
