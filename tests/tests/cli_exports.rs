@@ -105,6 +105,29 @@ fn files_for_other_programs_hold_the_same_forces() {
     }
 }
 
+/// A run without flutter leaves none of an earlier one beside its files.
+#[test]
+fn files_of_an_earlier_run_do_not_stay() {
+    let place = wing_place();
+    place
+        .run(&["run", "wing.toml", "-q", "--out", "out"])
+        .code(0);
+    assert!(place.path("out/flutter_mode.pvd").is_file());
+    let slow = ["--set", "stability.speed=[5.0, 6.0]"];
+    let mut again = vec!["run", "wing.toml", "-q", "--out", "out"];
+    again.extend(slow);
+    place.run(&again).code(0);
+    assert_eq!(place.read("out/crossings.csv").lines().count(), 1);
+    let left = fs::read_dir(place.path("out")).unwrap().flatten();
+    let names = left.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    assert!(
+        names
+            .filter(|name| name.starts_with("flutter_mode"))
+            .count()
+            == 0
+    );
+}
+
 /// `report` computes nothing long, and says what to do.
 #[test]
 fn a_report_needs_stored_forces() {
@@ -131,6 +154,7 @@ fn a_new_case_runs_as_it_is() {
     let text = place.refused(&["new", "first"]);
     assert!(text.contains("there already"), "{text}");
     place.refused(&["new", "a\"b"]);
+    place.refused(&["new", "a\nb"]);
     place
         .run(&[
             "sweep",

@@ -55,6 +55,8 @@
   }
   const width = document.documentElement.scrollWidth;
   check("nothing is wider than the window", width <= innerWidth, `${width} of ${innerWidth}`);
+  const cut = [...document.querySelectorAll(".scroll")].filter((part) => part.scrollWidth > part.clientWidth);
+  check("no table is cut", cut.length === 0, cut.map((part) => `${part.scrollWidth} of ${part.clientWidth}`).join(", "));
   check("no script fails", window.failures.length === 0, window.failures.join("; "));
   const outside = performance.getEntriesByType("resource").map((entry) => entry.name);
   check("nothing is fetched", outside.length === 0, outside.join(" "));

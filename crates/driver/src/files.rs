@@ -34,6 +34,22 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
         .map(drop)
 }
 
+/// Removes a file of an earlier run that this one does not write; one that is not there is
+/// no failure.
+///
+/// # Errors
+/// [`Failure`] of kind input or output.
+pub fn remove(path: &Path) -> Result<(), Failure> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Failure::io(
+            "remove the file of an earlier run",
+            path,
+            &error,
+        )),
+        _ => Ok(()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

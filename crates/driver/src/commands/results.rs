@@ -126,6 +126,27 @@ pub(crate) fn results(
     Ok(())
 }
 
+/// Files that not every run writes: those of an earlier run must not stay beside the others.
+fn clear(out: &Path) -> Result<(), Failure> {
+    for name in [
+        "flight_modes.csv",
+        "counts.csv",
+        "flutter_summary.f06",
+        "flutter_mode.pvd",
+    ] {
+        files::remove(&out.join(name))?;
+    }
+    for number in 0..export::FRAMES {
+        files::remove(&out.join(frame_name(number)))?;
+    }
+    Ok(())
+}
+
+/// File of a frame of the flutter mode.
+fn frame_name(number: usize) -> String {
+    format!("flutter_mode_{number:02}.vtu")
+}
+
 /// Roots and what follows from them as files.
 fn tables(
     session: &Session,
@@ -136,6 +157,7 @@ fn tables(
     speeds: &[f64],
 ) -> Result<(), Failure> {
     let result = &swept.result;
+    clear(out)?;
     session.write_json(&out.join("flutter.json"), result)?;
     let write = |name: &str, text: String| session.write(&out.join(name), text);
     write("roots.csv", report::roots_csv(&result.methods))?;
@@ -163,15 +185,15 @@ fn flutter_frames(
     motion: &report::Motion,
     frequency_hz: f64,
 ) -> Result<(), Failure> {
-    const NAME: &str = "flutter_mode";
     for number in 0..export::FRAMES {
-        let path = out.join(format!("{NAME}_{number:02}.vtu"));
+        let path = out.join(frame_name(number));
         let bytes = export::frame(&aircraft.surface.mesh, motion, number)
             .map_err(|error| Failure::io("write the file", &path, &error))?;
         files::write(&path, bytes)?;
     }
-    let text = export::collection(NAME, frequency_hz);
-    session.write(&out.join(format!("{NAME}.pvd")), text)
+    let frames: Vec<String> = (0..export::FRAMES).map(frame_name).collect();
+    let text = export::collection(&frames, frequency_hz);
+    session.write(&out.join("flutter_mode.pvd"), text)
 }
 
 /// The surface with its modes, said, and its forces.

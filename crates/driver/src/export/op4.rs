@@ -7,6 +7,9 @@
 use crate::gaf_json::Document;
 use std::fmt::Write;
 
+/// Smallest number with two digits in its exponent.
+const SMALLEST: f64 = 1e-99;
+
 /// Real and complex double precision.
 const REAL: usize = 2;
 const COMPLEX: usize = 4;
@@ -62,8 +65,10 @@ fn numbers(text: &mut String, values: &[f64]) {
     }
 }
 
-/// `1.2345678901234567E+01`, as Fortran writes it.
+/// `1.2345678901234567E+01`, as Fortran writes it in 23 columns: there is room for two digits
+/// of the exponent, and what needs three below zero is zero beside any other force.
 fn exponential(value: f64) -> String {
+    let value = if value.abs() < SMALLEST { 0.0 } else { value };
     let text = format!("{value:.16E}");
     let (digits, exponent) = text.split_once('E').unwrap_or((&text, "0"));
     let (sign, size) = match exponent.strip_prefix('-') {
@@ -81,6 +86,6 @@ mod tests {
     fn numbers_are_those_of_fortran() {
         assert_eq!(exponential(-12.5), "-1.2500000000000000E+01");
         assert_eq!(exponential(0.0), "0.0000000000000000E+00");
-        assert_eq!(exponential(1e-300), "1.0000000000000000E-300");
+        assert_eq!(exponential(-1e-300), "0.0000000000000000E+00");
     }
 }

@@ -37,7 +37,7 @@ pub(crate) fn frame(
 }
 
 /// The collection of all frames, time in seconds.
-pub(crate) fn collection(name: &str, frequency_hz: f64) -> String {
+pub(crate) fn collection(frames: &[String], frequency_hz: f64) -> String {
     let mut text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
                     byte_order=\"LittleEndian\">\n<Collection>\n"
         .to_owned();
@@ -46,12 +46,12 @@ pub(crate) fn collection(name: &str, frequency_hz: f64) -> String {
     } else {
         1.0
     };
-    for number in 0..FRAMES {
-        let time = period * number as f64 / FRAMES as f64;
+    for (number, name) in frames.iter().enumerate() {
+        let time = period * number as f64 / frames.len() as f64;
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "<DataSet timestep=\"{time}\" part=\"0\" file=\"{name}_{number:02}.vtu\"/>"
+            "<DataSet timestep=\"{time}\" part=\"0\" file=\"{name}\"/>"
         );
     }
     text.push_str("</Collection>\n</VTKFile>\n");

@@ -164,7 +164,9 @@
     `2σ/ω ${digits(branch.d[i], 4)}   damping ratio ${digits(branch.ratio[i], 4)}`;
   const densityOf = (branch, i) => (branch.density ? branch.density[i] : data.density);
   const extent = (values, margin) => {
-    let [low, high] = [Math.min(...values), Math.max(...values)];
+    // Not Math.min(...values): arguments are limited, points of a long sweep are not.
+    let [low, high] = [Infinity, -Infinity];
+    for (const value of values) { low = Math.min(low, value); high = Math.max(high, value); }
     if (!(high > low)) { low -= 1; high += 1; }
     return [low - margin * (high - low), high + margin * (high - low)];
   };
@@ -372,7 +374,7 @@
   amplitude.addEventListener("input", draw);
   let held = null;
   canvas.addEventListener("pointerdown", (event) => { held = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
-  canvas.addEventListener("pointerup", () => { held = null; });
+  for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => { held = null; });
   canvas.addEventListener("pointermove", (event) => {
     if (!held) return;
     state.turn += (event.clientX - held[0]) * 0.01;
