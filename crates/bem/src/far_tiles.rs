@@ -14,8 +14,9 @@
 use crate::far_wake::{FarWake, INVERSE_FOUR_PI};
 use crate::lanes::{Lanes, WIDTH};
 use crate::panel_block::{Points, dot, points_of, splat3};
-use crate::tiles::{TestCluster, test};
-use faer::c64;
+use crate::receiver::Receiver;
+use crate::tiles::{TestCluster, add_lanes, test};
+use faer::{MatRef, c64};
 use fladder_mesh::Vec3;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -80,6 +81,38 @@ impl FarBlock {
             .collect()
     }
 
+    /// Whether the singularities at all nodes are far from a receiver.
+    pub(crate) fn is_far_from(&self, receiver: &Receiver, nodes: &[c64]) -> bool {
+        receiver.is_beyond(|point| self.distance(point, nodes))
+    }
+
+    /// Distance of a point from the singularities at the nodes, from below.
+    ///
+    /// With X along and ρ across a streamline, 1/r at ξ is singular where X = Re ξ and
+    /// ρ = |Im ξ|, and its branch is cut on ρ = |Im ξ| downstream of there. Streamlines
+    /// between the ends of a strip are at most half its length from the nearer one.
+    fn distance(&self, point: Vec3, nodes: &[c64]) -> f64 {
+        let between = self
+            .strips
+            .iter()
+            .map(|s| s.span_squared.sqrt())
+            .fold(0.0, f64::max);
+        let nearest = self
+            .anchors
+            .iter()
+            .flat_map(|anchor| {
+                let offset = point - anchor;
+                let along = offset.dot(&self.direction);
+                let across = (offset - along * self.direction).norm();
+                nodes.iter().map(move |xi| {
+                    let ahead = (xi.re - along).max(0.0);
+                    ahead.hypot(across - xi.im.abs())
+                })
+            })
+            .fold(f64::INFINITY, f64::min);
+        nearest - 0.5 * between
+    }
+
     /// Columns of a tile: (streamlines × nodes × 2), real and imaginary part beside each
     /// other.
     pub(crate) fn columns(&self, nodes: usize) -> usize {
@@ -93,7 +126,7 @@ pub(crate) struct FarScratch {
     arch: Arch,
     inverse: Vec<[f64; 2 * WIDTH]>,
     values: [Vec<f64>; 3],
-    image: Vec<f64>,
+    at_points: Vec<f64>,
     tile: Vec<f64>,
 }
 
@@ -103,7 +136,7 @@ impl Default for FarScratch {
             arch: Arch::new(),
             inverse: Vec::new(),
             values: Default::default(),
-            image: Vec::new(),
+            at_points: Vec::new(),
             tile: Vec::new(),
         }
     }
@@ -111,13 +144,13 @@ impl Default for FarScratch {
 
 impl FarScratch {
     /// Tested influence densities of a block at the nodes ξ: rows of the cluster ×
-    /// [`FarBlock::columns`], by rows; without weights and without e^{−sξ}.
+    /// [`FarBlock::columns`]; without weights and without e^{−sξ}.
     pub(crate) fn tile(
         &mut self,
         cluster: &TestCluster,
         block: &FarBlock,
         nodes: &[c64],
-    ) -> &[f64] {
+    ) -> MatRef<'_, f64> {
         self.fill(cluster, block, nodes, None)
     }
 
@@ -128,8 +161,29 @@ impl FarScratch {
         block: &FarBlock,
         nodes: &[c64],
         factors: &[c64],
-    ) -> &[f64] {
+    ) -> MatRef<'_, f64> {
         self.fill(cluster, block, nodes, Some(factors))
+    }
+
+    /// [`Self::tile`] at the chosen points of a receiver instead of at rows.
+    pub(crate) fn far_tile(
+        &mut self,
+        receiver: &Receiver,
+        block: &FarBlock,
+        nodes: &[c64],
+    ) -> MatRef<'_, f64> {
+        self.fill_far(receiver, block, nodes, None)
+    }
+
+    /// [`Self::summed_tile`] at the chosen points of a receiver instead of at rows.
+    pub(crate) fn summed_far_tile(
+        &mut self,
+        receiver: &Receiver,
+        block: &FarBlock,
+        nodes: &[c64],
+        factors: &[c64],
+    ) -> MatRef<'_, f64> {
+        self.fill_far(receiver, block, nodes, Some(factors))
     }
 
     fn fill(
@@ -138,33 +192,16 @@ impl FarScratch {
         block: &FarBlock,
         nodes: &[c64],
         factors: Option<&[c64]>,
-    ) -> &[f64] {
-        let places = if factors.is_some() { 1 } else { nodes.len() };
-        let (rows, columns) = (cluster.rows.len(), block.columns(places));
-        self.tile.clear();
-        self.tile.resize(rows * columns, 0.0);
-        self.inverse
-            .resize(block.lines.len() * nodes.len(), [0.0; 2 * WIDTH]);
+    ) -> MatRef<'_, f64> {
+        let (rows, columns) = self.clear(cluster.rows.len(), block, nodes, factors);
         for group in &cluster.groups {
             for q in 0..3 {
                 for (image, seen) in group.seen.iter().enumerate() {
-                    let out = if image == 0 {
-                        &mut self.values[q]
+                    self.evaluate(&seen.points[q], block, nodes, factors);
+                    if image == 0 {
+                        self.values[q].clone_from(&self.at_points);
                     } else {
-                        &mut self.image
-                    };
-                    out.clear();
-                    out.resize(columns * WIDTH, 0.0);
-                    self.arch.dispatch(Densities {
-                        block,
-                        nodes,
-                        factors,
-                        points: &seen.points[q],
-                        inverse: &mut self.inverse,
-                        out,
-                    });
-                    if image == 1 {
-                        for (o, v) in self.values[q].iter_mut().zip(&self.image) {
+                        for (o, v) in self.values[q].iter_mut().zip(&self.at_points) {
                             *o += seen.sign * v;
                         }
                     }
@@ -172,7 +209,61 @@ impl FarScratch {
             }
             test(self.arch, group, &self.values, &mut self.tile);
         }
-        &self.tile
+        MatRef::from_row_major_slice(&self.tile, rows, columns)
+    }
+
+    fn fill_far(
+        &mut self,
+        receiver: &Receiver,
+        block: &FarBlock,
+        nodes: &[c64],
+        factors: Option<&[c64]>,
+    ) -> MatRef<'_, f64> {
+        let (width, columns) = self.clear(receiver.width(), block, nodes, factors);
+        for seen in &receiver.seen {
+            for (eight, points) in seen.points.iter().enumerate() {
+                self.evaluate(points, block, nodes, factors);
+                add_lanes(seen.sign, eight, &self.at_points, width, &mut self.tile);
+            }
+        }
+        MatRef::from_column_major_slice(&self.tile, width, columns)
+    }
+
+    /// Makes room for a tile; its size.
+    fn clear(
+        &mut self,
+        rows: usize,
+        block: &FarBlock,
+        nodes: &[c64],
+        factors: Option<&[c64]>,
+    ) -> (usize, usize) {
+        let places = if factors.is_some() { 1 } else { nodes.len() };
+        let columns = block.columns(places);
+        self.tile.clear();
+        self.tile.resize(rows * columns, 0.0);
+        self.at_points.resize(columns * WIDTH, 0.0);
+        (rows, columns)
+    }
+
+    /// Densities at eight points.
+    fn evaluate(
+        &mut self,
+        points: &Points,
+        block: &FarBlock,
+        nodes: &[c64],
+        factors: Option<&[c64]>,
+    ) {
+        self.inverse
+            .resize(block.lines.len() * nodes.len(), [0.0; 2 * WIDTH]);
+        self.at_points.fill(0.0);
+        self.arch.dispatch(Densities {
+            block,
+            nodes,
+            factors,
+            points,
+            inverse: &mut self.inverse,
+            out: &mut self.at_points,
+        });
     }
 }
 

@@ -20,15 +20,27 @@ use crate::near_field::{POINTS, TestTriangle};
 use crate::ordering::spatial_order;
 use crate::panel_block::{BLOCK, PanelBlock};
 use crate::progress::Progress;
+use crate::receiver::Receiver;
+use crate::regions::{Regions, TOGETHER};
+use crate::source_columns::SourceColumns;
 use crate::tiles::vertex_blocks;
 use crate::tiles::{CLUSTER, PointValues, TestCluster, Tile, TileScratch, free_terms};
 use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatRef, Par};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 use fladder_mesh::Vec3;
 use rayon::prelude::*;
 
 /// Clusters whose rows are held in memory at once.
-pub(crate) const CLUSTERS_AT_ONCE: usize = 16;
+pub(crate) const CLUSTERS_AT_ONCE: usize = 8;
+
+/// Test triangles of the regions' levels, of a cluster, of a block of panels, of a group.
+const RUNS: [usize; 5] = [
+    TOGETHER * TOGETHER * CLUSTER,
+    TOGETHER * CLUSTER,
+    CLUSTER,
+    BLOCK,
+    WIDTH,
+];
 
 /// Normals, areas, gradients and test points of a cut surface.
 #[derive(Clone, Debug)]
@@ -52,6 +64,8 @@ pub(crate) struct Galerkin {
     constrained: Vec<bool>,
     /// Test triangles, close ones together.
     pub(crate) clusters: Vec<TestCluster>,
+    /// Clusters together, for what is far from them.
+    pub(crate) regions: Regions,
     /// The surface in blocks of close triangles.
     blocks: Vec<PanelBlock>,
 }
@@ -67,6 +81,49 @@ pub(crate) struct Assembly {
     pub(crate) free_terms: Vec<f64>,
 }
 
+/// D of the far part of the surface at the chosen points of a receiver.
+#[derive(Debug, Default)]
+struct FarDoublets {
+    width: usize,
+    /// Chosen points × vertices, by columns.
+    values: Vec<f64>,
+}
+
+impl FarDoublets {
+    fn clear(&mut self, receiver: Option<&Receiver>, vertices: usize) {
+        self.width = receiver.map_or(0, Receiver::width);
+        self.values.clear();
+        self.values.resize(self.width * vertices, 0.0);
+    }
+
+    fn add(&mut self, block: &PanelBlock, tile: &Tile) {
+        for (&v, values) in block
+            .columns
+            .iter()
+            .zip(tile.doublets.chunks_exact(self.width))
+        {
+            let from = v as usize * self.width;
+            let column = &mut self.values[from..from + self.width];
+            for (sum, value) in column.iter_mut().zip(values) {
+                *sum += value;
+            }
+        }
+    }
+
+    fn doublets(&self) -> MatRef<'_, f64> {
+        let vertices = self.values.len() / self.width.max(1);
+        MatRef::from_column_major_slice(&self.values, self.width, vertices)
+    }
+}
+
+/// Memory of one evaluation, used again.
+#[derive(Debug, Default)]
+struct Working {
+    scratch: TileScratch,
+    tile: Tile,
+    far: FarDoublets,
+}
+
 /// The rows that one cluster contributes to.
 struct ClusterRows {
     /// c φ − D φ by rows.
@@ -74,6 +131,7 @@ struct ClusterRows {
     /// −S σ.
     sources: Mat<f64>,
     free_terms: Vec<PointValues>,
+    working: Working,
 }
 
 impl Galerkin {
@@ -113,7 +171,7 @@ impl Galerkin {
                     / 3.0
             })
             .collect();
-        let order = spatial_order(&centres, BLOCK, WIDTH);
+        let order = spatial_order(&centres, RUNS);
         let blocks = vertex_blocks(&surface.vertices, &surface.triangles, &order);
         let mut galerkin = Self {
             triangles: surface.triangles.clone(),
@@ -131,12 +189,14 @@ impl Galerkin {
                 .map(|v| image == Image::Odd && image::on_plane(v))
                 .collect(),
             clusters: Vec::new(),
+            regions: Regions::default(),
             blocks,
         };
         galerkin.clusters = order
-            .chunks(CLUSTER)
-            .map(|triangles| TestCluster::new(&galerkin, triangles))
+            .par_chunks(CLUSTER)
+            .map(|triangles| TestCluster::receiving(&galerkin, triangles))
             .collect();
+        galerkin.regions = Regions::new(&galerkin.clusters, image);
         galerkin
     }
 
@@ -170,7 +230,7 @@ impl Galerkin {
         let mut rows = vec![0.0; n * n];
         let mut right_hand_sides = Mat::zeros(n, sources.ncols());
         let mut free_terms = vec![0.0; 3 * self.n_triangles()];
-        let sources = self.in_order_of_blocks(sources);
+        let sources = SourceColumns::new(sources, &self.blocks);
         let stage = "assembling body influences";
         progress.stage(stage, self.n_triangles() as u64);
         let mut memory = Vec::new();
@@ -178,6 +238,7 @@ impl Galerkin {
             rows: Vec::new(),
             sources: Mat::new(),
             free_terms: Vec::new(),
+            working: Working::default(),
         });
         for batch in self.clusters.chunks(CLUSTERS_AT_ONCE) {
             if progress.cancelled() {
@@ -188,7 +249,7 @@ impl Galerkin {
                 .par_iter()
                 .zip(evaluated.par_iter_mut())
                 .for_each(|(cluster, result)| {
-                    self.evaluate(cluster, sources.as_ref(), result);
+                    self.evaluate(cluster, &sources, result);
                     let triangles = cluster.groups.iter().map(|g| g.triangles.len());
                     progress.advance(triangles.sum::<usize>() as u64);
                 });
@@ -251,52 +312,48 @@ impl Galerkin {
         Ok(free_terms)
     }
 
-    /// Corner values with the triangles in the order of the blocks.
-    fn in_order_of_blocks(&self, sources: MatRef<'_, f64>) -> Mat<f64> {
-        let order: Vec<usize> = self
-            .blocks
-            .iter()
-            .flat_map(|b| &b.triangles)
-            .map(|&t| t as usize)
-            .collect();
-        Mat::from_fn(sources.nrows(), sources.ncols(), |i, j| {
-            sources[(3 * order[i / 3] + i % 3, j)]
-        })
-    }
-
     /// c N − D and −S σ tested over one cluster.
     fn evaluate(
         &self,
         cluster: &TestCluster,
-        sources: MatRef<'_, f64>,
+        sources: &SourceColumns,
         result: &mut ClusterRows,
     ) {
         let (n, height) = (self.n_vertices, cluster.rows.len());
         let rows = &mut result.rows;
         rows.clear();
         rows.resize(height * n, 0.0);
-        let mut product = Mat::zeros(height, sources.ncols());
+        let mut near = sources.zeros(height);
         let mut sums = vec![[[0.0; WIDTH]; 3]; cluster.groups.len()];
-        let (mut scratch, mut tile) = (TileScratch::default(), Tile::default());
-        let mut corner = 0;
+        let Working { scratch, tile, far } = &mut result.working;
+        far.clear(cluster.receiver.as_ref(), n);
+        let mut far_sources = sources.zeros(far.width);
+        let mut next = 0;
         for block in &self.blocks {
-            scratch.fill(self, cluster, block, true, &mut tile, &mut sums);
+            let first = next;
+            next += block.triangles.len();
+            if let Some(receiver) = cluster.receiver_of(block) {
+                scratch.fill_far(receiver, block, true, tile);
+                far.add(block, tile);
+                sources.add_by_columns(first, &tile.sources, &mut far_sources);
+                continue;
+            }
+            scratch.fill(self, cluster, block, true, tile, &mut sums);
             let tested = tile.doublets.chunks_exact(block.places());
             for (row, tested) in rows.chunks_exact_mut(n).zip(tested) {
                 for (&v, value) in block.columns.iter().zip(tested) {
                     row[v as usize] -= value;
                 }
             }
-            let corners = 3 * block.triangles.len();
-            matmul(
-                &mut product,
-                Accum::Add,
-                MatRef::from_row_major_slice(&tile.sources, height, corners),
-                sources.subrows(corner, corners),
-                -1.0,
-                Par::Seq,
-            );
-            corner += corners;
+            sources.add_by_rows(first, &tile.sources, &mut near);
+        }
+        let mut product = -sources.in_order(&near);
+        if let Some(receiver) = &cluster.receiver {
+            let tested = receiver.tested.as_ref();
+            let all = MatMut::from_row_major_slice_mut(rows, height, n);
+            matmul(all, Accum::Add, tested, far.doublets(), -1.0, Par::Seq);
+            let far = sources.in_order(&far_sources);
+            matmul(&mut product, Accum::Add, tested, &far, -1.0, Par::Seq);
         }
         let free: Vec<PointValues> = sums.iter().map(free_terms).collect();
         for (group, free) in cluster.groups.iter().zip(&free) {

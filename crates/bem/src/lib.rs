@@ -18,6 +18,8 @@
 //! | `strike` | sheets that run into bodies |
 //! | `contour`, `far_wake`, `far_tiles` | its semi-infinite part on a path in the complex plane |
 //! | `lanes`, `panel_block`, `ordering`, `tiles` | eight points at once, blocks of close panels, test triangles |
+//! | `source_columns` | products with source strengths |
+//! | `skeleton`, `receiver`, `regions` | few points at which far influences are known |
 //! | `galerkin`, `near_field` | the equations |
 //! | `dense`, `blocked_lu` | their factorisation |
 //! | `cluster_tree`, `aca`, `hierarchical`, `krylov` | the same for more unknowns than a matrix can hold |
@@ -65,10 +67,14 @@ pub mod pieces;
 mod prepare;
 mod pressure;
 mod progress;
+mod receiver;
 mod reduce;
+mod regions;
 mod shape_change;
 mod sheet_lines;
+mod skeleton;
 mod solve;
+mod source_columns;
 mod stations;
 mod steady;
 mod strike;

@@ -2,20 +2,19 @@
 
 use fladder_mesh::Vec3;
 
-/// Indices of `points` in an order in which every aligned run of `unit` of them, and every
-/// aligned run of `small`, is a compact cluster: bisection across the longest side of the
-/// box, cut at multiples of the run.
-pub(crate) fn spatial_order(points: &[Vec3], unit: usize, small: usize) -> Vec<u32> {
+/// Indices of `points` in an order in which every aligned run of `runs[0]` of them, of
+/// `runs[1]` and so on, each a divisor of the one before, is a compact cluster: bisection
+/// across the longest side of the box, cut at multiples of the longest run below the length.
+pub(crate) fn spatial_order<const N: usize>(points: &[Vec3], runs: [usize; N]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    bisect(points, &mut order, unit, small);
+    bisect(points, &mut order, &runs);
     order
 }
 
-fn bisect(points: &[Vec3], part: &mut [u32], unit: usize, small: usize) {
-    let run = if part.len() > unit { unit } else { small };
-    if part.len() <= run {
+fn bisect(points: &[Vec3], part: &mut [u32], runs: &[usize]) {
+    let Some(&run) = runs.iter().find(|run| part.len() > **run) else {
         return;
-    }
+    };
     let (mut low, mut high) = (points[part[0] as usize], points[part[0] as usize]);
     for &i in part.iter() {
         low = low.inf(&points[i as usize]);
@@ -29,8 +28,8 @@ fn bisect(points: &[Vec3], part: &mut [u32], unit: usize, small: usize) {
             .then(a.cmp(&b))
     });
     let (left, right) = part.split_at_mut(cut);
-    bisect(points, left, unit, small);
-    bisect(points, right, unit, small);
+    bisect(points, left, runs);
+    bisect(points, right, runs);
 }
 
 #[cfg(test)]
@@ -42,7 +41,7 @@ mod tests {
         let points: Vec<Vec3> = (0..1000)
             .map(|i| Vec3::new(f64::from(i * 37 % 1000), f64::from(i % 3), 0.0))
             .collect();
-        let order = spatial_order(&points, 64, 8);
+        let order = spatial_order(&points, [64, 8]);
         let mut sorted = order.clone();
         sorted.sort_unstable();
         assert!(sorted.iter().enumerate().all(|(i, &v)| i == v as usize));

@@ -17,12 +17,13 @@ use crate::galerkin::Galerkin;
 use crate::lanes::{Lanes, WIDTH};
 use crate::near_field::{NEAR, TestTriangle};
 use crate::panel_block::{BlockScratch, PanelBlock, Points, enclosing};
+use crate::receiver::Receiver;
 use fladder_mesh::Vec3;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Test triangles of a cluster; fixed, so that the order of sums does not depend on the
 /// number of threads.
-pub(crate) const CLUSTER: usize = 128;
+pub(crate) const CLUSTER: usize = 256;
 
 /// A value at three points of each of eight test triangles.
 pub(crate) type PointValues = [[f64; WIDTH]; 3];
@@ -58,6 +59,8 @@ pub(crate) struct TestCluster {
     pub(crate) groups: Vec<TestGroup>,
     /// Vertices, ascending.
     pub(crate) rows: Vec<u32>,
+    /// Where it receives what is far, if that has been prepared.
+    pub(crate) receiver: Option<Receiver>,
 }
 
 impl TestCluster {
@@ -72,7 +75,23 @@ impl TestCluster {
             .chunks(WIDTH)
             .map(|part| TestGroup::new(galerkin, part, &rows))
             .collect();
-        Self { groups, rows }
+        Self {
+            groups,
+            rows,
+            receiver: None,
+        }
+    }
+
+    /// The same, prepared to receive far influences at few points.
+    pub(crate) fn receiving(galerkin: &Galerkin, triangles: &[u32]) -> Self {
+        let mut cluster = Self::new(galerkin, triangles);
+        cluster.receiver = Receiver::new(galerkin, triangles, &cluster.rows);
+        cluster
+    }
+
+    /// The receiver, where it may stand for the test points.
+    pub(crate) fn receiver_of(&self, block: &PanelBlock) -> Option<&Receiver> {
+        self.receiver.as_ref().filter(|r| r.is_far_from(block))
     }
 }
 
@@ -187,7 +206,8 @@ impl Default for TileScratch {
 
 impl TileScratch {
     /// Fills `tile` with the influence of `block` on `cluster`, S only where `sources`, and
-    /// adds Σ D over the block, without the image's sign, to `sums` of each group.
+    /// adds what the divided test triangles change of Σ D over the block, without the
+    /// image's sign, to `sums` of each group.
     pub(crate) fn fill(
         &mut self,
         galerkin: &Galerkin,
@@ -208,14 +228,8 @@ impl TileScratch {
         tile.sources.clear();
         tile.sources.resize(rows * corners, 0.0);
         for (group, sums) in cluster.groups.iter().zip(sums) {
-            self.at_points(galerkin, group, block, corners);
-            for (sum, values) in sums.iter_mut().zip(&self.doublets) {
-                add_up(sum, values);
-            }
+            self.at_points(galerkin, group, block, corners, sums);
             if let Some(image) = group.seen.get(1) {
-                for (sum, values) in sums.iter_mut().zip(&self.image_doublets) {
-                    add_up(sum, values);
-                }
                 for q in 0..3 {
                     add_scaled(image.sign, &self.image_doublets[q], &mut self.doublets[q]);
                     add_scaled(image.sign, &self.image_sources[q], &mut self.sources[q]);
@@ -224,6 +238,39 @@ impl TileScratch {
             let arch = self.arch;
             test(arch, group, &self.doublets, &mut tile.doublets);
             test(arch, group, &self.sources, &mut tile.sources);
+        }
+    }
+
+    /// Fills `tile` with the influence of `block` at the chosen points of a receiver far
+    /// from it: chosen points × places of doublets and × corners of sources, by columns.
+    pub(crate) fn fill_far(
+        &mut self,
+        receiver: &Receiver,
+        block: &PanelBlock,
+        sources: bool,
+        tile: &mut Tile,
+    ) {
+        let width = receiver.width();
+        let corners = if sources {
+            3 * block.triangles.len()
+        } else {
+            0
+        };
+        tile.doublets.clear();
+        tile.doublets.resize(block.places() * width, 0.0);
+        tile.sources.clear();
+        tile.sources.resize(corners * width, 0.0);
+        let (doublets, sources) = (&mut self.doublets[0], &mut self.sources[0]);
+        for seen in &receiver.seen {
+            let far = block.is_far(seen.centre, receiver.radius());
+            for (eight, points) in seen.points.iter().enumerate() {
+                doublets.clear();
+                doublets.resize(block.places() * WIDTH, 0.0);
+                sources.resize(corners * WIDTH, 0.0);
+                block.evaluate(self.arch, points, far, &mut self.block, doublets, sources);
+                add_lanes(seen.sign, eight, doublets, width, &mut tile.doublets);
+                add_lanes(seen.sign, eight, sources, width, &mut tile.sources);
+            }
         }
     }
 
@@ -260,6 +307,7 @@ impl TileScratch {
         group: &TestGroup,
         block: &PanelBlock,
         corners: usize,
+        sums: &mut PointValues,
     ) {
         for (image, seen) in group.seen.iter().enumerate() {
             let (doublets, sources, tests) = if image == 0 {
@@ -293,6 +341,7 @@ impl TileScratch {
                 for panel in test.near(&block.spheres) {
                     let change = test.change(&block.near(self.arch, panel, &test.near_points));
                     for q in 0..3 {
+                        sums[q][lane] += change.doublets[q].iter().sum::<f64>();
                         for c in 0..3 {
                             let at = block.place(panel, c) * WIDTH + lane;
                             doublets[q][at] += change.doublets[q][c];
@@ -308,10 +357,18 @@ impl TileScratch {
     }
 }
 
-fn add_up(sum: &mut [f64; WIDTH], values: &[f64]) {
-    for part in values.chunks_exact(WIDTH) {
-        for (s, v) in sum.iter_mut().zip(part) {
-            *s += v;
+/// Adds columns of eight lanes to those lanes of columns `width` high.
+pub(crate) fn add_lanes(
+    scale: f64,
+    eight: usize,
+    values: &[f64],
+    width: usize,
+    out: &mut [f64],
+) {
+    let columns = out.chunks_exact_mut(width);
+    for (values, column) in values.as_chunks::<WIDTH>().0.iter().zip(columns) {
+        for (o, v) in column[eight * WIDTH..].iter_mut().zip(values) {
+            *o += scale * v;
         }
     }
 }
@@ -425,9 +482,10 @@ impl Testing<'_> {
     }
 }
 
-/// Free terms of the points of a group from Σ D over the closed surface: c = 1 + D[1].
-pub(crate) fn free_terms(sums: &PointValues) -> PointValues {
-    sums.map(|lanes| lanes.map(|sum| 1.0 + sum))
+/// Free terms of the points of a group, c = 1 + D[1]: inside flat triangles of a closed
+/// surface D[1] is −½, and what the divided test triangles change.
+pub(crate) fn free_terms(changes: &PointValues) -> PointValues {
+    changes.map(|lanes| lanes.map(|change| 0.5 + change))
 }
 
 /// Blocks of a surface whose corners' columns are their vertices.

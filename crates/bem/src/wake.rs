@@ -55,7 +55,7 @@ impl JumpSheet {
             let slot = corner_slots[t as usize][c];
             (slot != NO_SLOT).then_some(slot)
         };
-        let blocks = spatial_order(&centres, BLOCK, WIDTH)
+        let blocks = spatial_order(&centres, [BLOCK, WIDTH])
             .chunks(BLOCK)
             .map(|which| PanelBlock::new(vertices, triangles, which, slot))
             .collect();

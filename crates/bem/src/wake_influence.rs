@@ -11,7 +11,10 @@ use crate::far_tiles::{FarBlock, FarScratch};
 use crate::galerkin::Galerkin;
 use crate::lanes::WIDTH;
 use crate::near_field::POINTS;
+use crate::panel_block::PanelBlock;
 use crate::progress::Progress;
+use crate::receiver::Receiver;
+use crate::regions::Part;
 use crate::tiles::{TestCluster, Tile, TileScratch};
 use crate::wake::{JumpSheet, Slot, Wake};
 use faer::linalg::matmul::matmul;
@@ -69,15 +72,8 @@ impl WakeInfluence<'_> {
         progress: &dyn Progress,
     ) -> Result<WakeBlocks, BemError> {
         let stage = "contracting the wake";
-        let (wake, clusters) = (self.wake, &self.galerkin.clusters);
-        let lefts: Vec<Mat<f64>> = clusters
-            .par_iter()
-            .map(|c| {
-                Mat::from_fn(left.ncols(), c.rows.len(), |f, r| {
-                    left[(c.rows[r] as usize, f)]
-                })
-            })
-            .collect();
+        let wake = self.wake;
+        let lefts = Lefts::new(left, self.galerkin);
         let mut near = Mat::<f64>::zeros(left.ncols(), wake.slots.len());
         progress.stage(
             stage,
@@ -90,17 +86,22 @@ impl WakeInfluence<'_> {
                 .map_init(Working::default, |working, b| {
                     let block = &sheet.blocks[b];
                     let mut sum = Mat::zeros(left.ncols(), block.columns.len());
-                    for (cluster, left) in clusters.iter().zip(&lefts) {
+                    let is_far = |r: &Receiver| r.is_far_from(block);
+                    for part in self.galerkin.regions.receiving(is_far) {
                         if progress.cancelled() {
                             break;
                         }
-                        let tile = self.tile(sheet, b, cluster, &own, working);
-                        let tile = MatRef::from_row_major_slice(
-                            tile,
-                            cluster.rows.len(),
-                            block.places(),
-                        )
-                        .subcols(0, block.columns.len());
+                        let (left, tile) = match self.target(part, is_far) {
+                            Target::Points(receiver) => {
+                                (lefts.far(part), working.far_tile(receiver, block))
+                            }
+                            Target::Rows(c, cluster) => {
+                                let tile = self.tile(sheet, b, cluster, &own, working);
+                                let (rows, places) = (cluster.rows.len(), block.places());
+                                let tile = MatRef::from_row_major_slice(tile, rows, places);
+                                (&lefts.rows[c], tile.subcols(0, block.columns.len()))
+                            }
+                        };
                         matmul(&mut sum, Accum::Add, left, tile, 1.0, Par::Seq);
                     }
                     progress.advance(1);
@@ -123,11 +124,25 @@ impl WakeInfluence<'_> {
         })
     }
 
+    /// A part that [`crate::regions::Regions::receiving`] has found.
+    fn target(&self, part: Part, is_far: impl Fn(&Receiver) -> bool) -> Target<'_> {
+        match part {
+            Part::Region(r) => Target::Points(&self.galerkin.regions.all[r].receiver),
+            Part::Cluster(c) => {
+                let cluster = &self.galerkin.clusters[c];
+                match cluster.receiver.as_ref().filter(|r| is_far(r)) {
+                    Some(receiver) => Target::Points(receiver),
+                    None => Target::Rows(c, cluster),
+                }
+            }
+        }
+    }
+
     /// Lᵀ T W of every far streamline and node, one matrix a path; `lefts` are L's rows of
-    /// each cluster, transposed.
+    /// each cluster.
     fn far_blocks(
         &self,
-        lefts: &[Mat<f64>],
+        lefts: &Lefts,
         functionals: usize,
         progress: &dyn Progress,
     ) -> Result<Vec<Mat<f64>>, BemError> {
@@ -142,13 +157,20 @@ impl WakeInfluence<'_> {
                 .map_init(FarScratch::default, |scratch, block| {
                     let columns = block.columns(path.nodes.len());
                     let mut sum = Mat::zeros(functionals, columns);
-                    for (cluster, left) in self.galerkin.clusters.iter().zip(lefts) {
+                    let is_far = |r: &Receiver| block.is_far_from(r, &path.nodes);
+                    for part in self.galerkin.regions.receiving(is_far) {
                         if progress.cancelled() {
                             break;
                         }
-                        let tile = scratch.tile(cluster, block, &path.nodes);
-                        let height = cluster.rows.len();
-                        let tile = MatRef::from_row_major_slice(tile, height, columns);
+                        let (left, tile) = match self.target(part, is_far) {
+                            Target::Points(receiver) => (
+                                lefts.far(part),
+                                scratch.far_tile(receiver, block, &path.nodes),
+                            ),
+                            Target::Rows(c, cluster) => {
+                                (&lefts.rows[c], scratch.tile(cluster, block, &path.nodes))
+                            }
+                        };
                         matmul(&mut sum, Accum::Add, left, tile, 1.0, Par::Seq);
                     }
                     progress.advance(1);
@@ -189,26 +211,37 @@ impl WakeInfluence<'_> {
         let parts: Vec<Mat<c64>> = clusters
             .par_iter()
             .map_init(FarScratch::default, |scratch, cluster| {
-                let height = cluster.rows.len();
-                let mut out = Mat::zeros(height, columns);
+                let mut sum = Contributions::new(cluster, columns);
                 for block in &blocks {
                     if progress.cancelled() {
-                        return out;
+                        return sum.rows;
                     }
-                    let tile = scratch.summed_tile(cluster, block, &path.nodes, &decays);
-                    for (r, row) in tile.chunks_exact(block.columns(1)).enumerate() {
-                        for (value, &line) in row.chunks_exact(2).zip(&block.lines) {
-                            let value = c64::new(value[0], value[1]);
-                            for &(column, weight) in
-                                &wake.threads[wake.far_threads[line as usize]]
-                            {
+                    let (out, tile) = match cluster
+                        .receiver
+                        .as_ref()
+                        .filter(|r| block.is_far_from(r, &path.nodes))
+                    {
+                        Some(receiver) => (
+                            &mut sum.far,
+                            scratch.summed_far_tile(receiver, block, &path.nodes, &decays),
+                        ),
+                        None => (
+                            &mut sum.rows,
+                            scratch.summed_tile(cluster, block, &path.nodes, &decays),
+                        ),
+                    };
+                    for (i, &line) in block.lines.iter().enumerate() {
+                        for &(column, weight) in &wake.threads[wake.far_threads[line as usize]]
+                        {
+                            for r in 0..tile.nrows() {
+                                let value = c64::new(tile[(r, 2 * i)], tile[(r, 2 * i + 1)]);
                                 out[(r, column)] += weight * value;
                             }
                         }
                     }
                 }
                 progress.advance(1);
-                out
+                sum.all(cluster)
             })
             .collect();
         if progress.cancelled() {
@@ -299,32 +332,37 @@ impl WakeInfluence<'_> {
         let weights: Vec<T> = wake.slots.iter().map(weight).collect();
         let sheets = [&wake.near, &wake.body].map(|sheet| (sheet, OwnTriangles::new(sheet)));
         progress.stage(stage, clusters.len() as u64);
-        let parts: Vec<Vec<T>> = clusters
+        let parts: Vec<Mat<T>> = clusters
             .par_iter()
             .map_init(Working::default, |working, cluster| {
-                let height = cluster.rows.len();
-                let mut out = vec![T::default(); height * columns];
+                let mut sum = Contributions::new(cluster, columns);
                 for (sheet, own) in &sheets {
                     for (b, block) in sheet.blocks.iter().enumerate() {
                         if progress.cancelled() {
-                            return out;
+                            return sum.rows;
                         }
-                        let tile = self.tile(sheet, b, cluster, own, working);
+                        let (out, tile) = match cluster.receiver_of(block) {
+                            Some(receiver) => (&mut sum.far, working.far_tile(receiver, block)),
+                            None => {
+                                let tile = self.tile(sheet, b, cluster, own, working);
+                                let (rows, places) = (cluster.rows.len(), block.places());
+                                let tile = MatRef::from_row_major_slice(tile, rows, places);
+                                (&mut sum.rows, tile)
+                            }
+                        };
                         for (place, &slot) in block.columns.iter().enumerate() {
                             let slot = slot as usize;
-                            let values = tile.iter().skip(place).step_by(block.places());
                             for &(column, share) in &wake.threads[wake.slots[slot].thread] {
                                 let factor = weights[slot] * share;
-                                let out = &mut out[column * height..(column + 1) * height];
-                                for (o, v) in out.iter_mut().zip(values.clone()) {
-                                    *o += factor * *v;
+                                for r in 0..tile.nrows() {
+                                    out[(r, column)] += factor * tile[(r, place)];
                                 }
                             }
                         }
                     }
                 }
                 progress.advance(1);
-                out
+                sum.all(cluster)
             })
             .collect();
         if progress.cancelled() {
@@ -332,14 +370,108 @@ impl WakeInfluence<'_> {
         }
         let mut rows = Mat::from_fn(self.galerkin.n_vertices, columns, |_, _| T::default());
         for (cluster, part) in clusters.iter().zip(&parts) {
-            let height = cluster.rows.len();
             for (r, &v) in cluster.rows.iter().enumerate() {
                 for c in 0..columns {
-                    rows[(v as usize, c)] += part[c * height + r];
+                    rows[(v as usize, c)] += part[(r, c)];
                 }
             }
         }
         Ok(rows)
+    }
+}
+
+/// L, transposed: functionals × rows of each cluster, and functionals × chosen points of
+/// each receiver.
+struct Lefts {
+    rows: Vec<Mat<f64>>,
+    clusters: Vec<Mat<f64>>,
+    regions: Vec<Mat<f64>>,
+}
+
+impl Lefts {
+    fn new(left: MatRef<'_, f64>, galerkin: &Galerkin) -> Self {
+        let on = |rows: &[u32]| {
+            Mat::from_fn(left.ncols(), rows.len(), |f, r| left[(rows[r] as usize, f)])
+        };
+        let at_points = |rows: &Mat<f64>, receiver: Option<&Receiver>| {
+            let mut far = Mat::zeros(rows.nrows(), receiver.map_or(0, Receiver::width));
+            if let Some(receiver) = receiver {
+                matmul(
+                    &mut far,
+                    Accum::Replace,
+                    rows,
+                    &receiver.tested,
+                    1.0,
+                    Par::Seq,
+                );
+            }
+            far
+        };
+        let clusters = &galerkin.clusters;
+        let rows: Vec<Mat<f64>> = clusters.par_iter().map(|c| on(&c.rows)).collect();
+        Self {
+            clusters: clusters
+                .par_iter()
+                .zip(&rows)
+                .map(|(c, rows)| at_points(rows, c.receiver.as_ref()))
+                .collect(),
+            regions: galerkin
+                .regions
+                .all
+                .par_iter()
+                .map(|r| at_points(&on(&r.rows), Some(&r.receiver)))
+                .collect(),
+            rows,
+        }
+    }
+
+    fn far(&self, part: Part) -> &Mat<f64> {
+        match part {
+            Part::Cluster(c) => &self.clusters[c],
+            Part::Region(r) => &self.regions[r],
+        }
+    }
+}
+
+/// Where the influence of a block is taken.
+enum Target<'a> {
+    Points(&'a Receiver),
+    Rows(usize, &'a TestCluster),
+}
+
+/// What blocks give a cluster: at its rows, and at the chosen points of its receiver.
+struct Contributions<T> {
+    rows: Mat<T>,
+    far: Mat<T>,
+}
+
+impl<T> Contributions<T>
+where
+    T: Copy + Default + AddAssign + Mul<f64, Output = T>,
+{
+    fn new(cluster: &TestCluster, columns: usize) -> Self {
+        let width = cluster.receiver.as_ref().map_or(0, Receiver::width);
+        let zeros = |rows| Mat::from_fn(rows, columns, |_, _| T::default());
+        Self {
+            rows: zeros(cluster.rows.len()),
+            far: zeros(width),
+        }
+    }
+
+    /// Both together at the rows.
+    fn all(self, cluster: &TestCluster) -> Mat<T> {
+        let mut rows = self.rows;
+        if let Some(receiver) = &cluster.receiver {
+            for c in 0..rows.ncols() {
+                for k in 0..receiver.width() {
+                    let value = self.far[(k, c)];
+                    for r in 0..rows.nrows() {
+                        rows[(r, c)] += value * receiver.tested[(r, k)];
+                    }
+                }
+            }
+        }
+        rows
     }
 }
 
@@ -364,6 +496,17 @@ struct Working {
     scratch: TileScratch,
     tile: Tile,
     sums: Vec<crate::tiles::PointValues>,
+}
+
+impl Working {
+    /// Influence of a far block at chosen points: points × columns.
+    fn far_tile(&mut self, receiver: &Receiver, block: &PanelBlock) -> MatRef<'_, f64> {
+        self.scratch
+            .fill_far(receiver, block, false, &mut self.tile);
+        let (width, places) = (receiver.width(), block.places());
+        MatRef::from_column_major_slice(&self.tile.doublets, width, places)
+            .subcols(0, block.columns.len())
+    }
 }
 
 /// Where a triangle of the body is in a sheet on it: block and place; once for each jump
