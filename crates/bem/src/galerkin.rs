@@ -67,7 +67,7 @@ pub(crate) struct Galerkin {
     /// Clusters together, for what is far from them.
     pub(crate) regions: Regions,
     /// The surface in blocks of close triangles.
-    blocks: Vec<PanelBlock>,
+    pub(crate) blocks: Vec<PanelBlock>,
 }
 
 /// The assembled equations.
@@ -272,44 +272,6 @@ impl Galerkin {
             right_hand_sides,
             free_terms,
         })
-    }
-
-    /// Free terms of a closed surface without its matrix: ½ at points inside flat triangles,
-    /// and what dividing test triangles near panels changes of the row sums.
-    pub(crate) fn closed_free_terms(
-        &self,
-        progress: &dyn Progress,
-    ) -> Result<Vec<f64>, BemError> {
-        let stage = "free terms";
-        progress.stage(stage, self.clusters.len() as u64);
-        let parts: Vec<Vec<PointValues>> = self
-            .clusters
-            .par_iter()
-            .map_init(TileScratch::default, |scratch, cluster| {
-                let mut sums = vec![[[0.0; WIDTH]; 3]; cluster.groups.len()];
-                for (group, sums) in cluster.groups.iter().zip(&mut sums) {
-                    for block in &self.blocks {
-                        scratch.near_sums(self, group, block, sums);
-                    }
-                }
-                progress.advance(1);
-                sums
-            })
-            .collect();
-        if progress.cancelled() {
-            return Err(BemError::Interrupted { stage });
-        }
-        let mut free_terms = vec![0.5; 3 * self.n_triangles()];
-        for (cluster, sums) in self.clusters.iter().zip(&parts) {
-            for (group, sums) in cluster.groups.iter().zip(sums) {
-                for (lane, &t) in group.triangles.iter().enumerate() {
-                    for (q, values) in sums.iter().enumerate() {
-                        free_terms[3 * t as usize + q] += values[lane];
-                    }
-                }
-            }
-        }
-        Ok(free_terms)
     }
 
     /// c N − D and −S σ tested over one cluster.

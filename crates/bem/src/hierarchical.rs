@@ -30,9 +30,6 @@ use rayon::prelude::*;
 /// Right-hand sides multiplied together by one thread.
 const TOGETHER: usize = 32;
 
-/// Blocks of the sources' operator whose products are held at once.
-const PRODUCTS_AT_ONCE: usize = 256;
-
 /// Residual of a solution, in tolerances of the blocks.
 const RESIDUAL: f64 = 0.2;
 
@@ -103,16 +100,6 @@ impl<'a> Surface<'a> {
         ClusterTree::new(&spheres)
     }
 
-    fn triangle_tree(&self) -> ClusterTree {
-        let spheres: Vec<(Vec3, f64)> = self
-            .galerkin
-            .triangles
-            .iter()
-            .map(|t| crate::panels::sphere(&t.map(|v| self.vertices[v as usize])))
-            .collect();
-        ClusterTree::new(&spheres)
-    }
-
     /// Triangles round some vertices, each once, in the order of the vertices.
     fn round(&self, vertices: &[u32]) -> Vec<u32> {
         let mut seen = std::collections::HashSet::new();
@@ -125,71 +112,55 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// Evaluates tiles and throws away the row sums.
+/// Evaluates tiles and throws away what the row sums change by.
 #[derive(Default)]
 struct Evaluator {
     scratch: TileScratch,
     tile: Tile,
-    sums: Vec<PointValues>,
+    changes: Vec<PointValues>,
 }
 
 impl Evaluator {
-    fn tile(
+    fn doublets(
         &mut self,
         surface: &Surface<'_>,
         cluster: &TestCluster,
         block: &PanelBlock,
-        sources: bool,
-    ) -> &Tile {
-        self.sums.clear();
-        self.sums.resize(cluster.groups.len(), [[0.0; WIDTH]; 3]);
+    ) -> &[f64] {
+        self.changes.clear();
+        self.changes.resize(cluster.groups.len(), [[0.0; WIDTH]; 3]);
         self.scratch.fill(
             surface.galerkin,
             cluster,
             block,
-            sources,
+            false,
             &mut self.tile,
-            &mut self.sums,
+            &mut self.changes,
         );
-        &self.tile
+        &self.tile.doublets
     }
 }
 
-/// Which operator, and over what columns.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Columns<'a> {
-    /// −D of jumps at vertices.
-    Vertices(&'a [u32]),
-    /// −S of the corners of triangles, three side by side.
-    Corners(&'a [u32]),
-}
-
-/// One block, row by row and column by column.
+/// −D of jumps at some vertices, row by row and column by column.
 struct Block<'a> {
     surface: &'a Surface<'a>,
     rows: &'a [u32],
-    columns: Columns<'a>,
+    columns: &'a [u32],
     panels: Vec<PanelBlock>,
     cluster: TestCluster,
     evaluator: Evaluator,
 }
 
 impl<'a> Block<'a> {
-    fn new(surface: &'a Surface<'a>, rows: &'a [u32], columns: Columns<'a>) -> Self {
-        let triangles = match columns {
-            Columns::Vertices(vertices) => surface.round(vertices),
-            Columns::Corners(triangles) => triangles.to_vec(),
-        };
-        let places: std::collections::HashMap<u32, u32> = match columns {
-            Columns::Vertices(vertices) => vertices
-                .iter()
-                .enumerate()
-                .map(|(place, &v)| (v, place as u32))
-                .collect(),
-            Columns::Corners(_) => std::collections::HashMap::new(),
-        };
+    fn new(surface: &'a Surface<'a>, rows: &'a [u32], columns: &'a [u32]) -> Self {
+        let places: std::collections::HashMap<u32, u32> = columns
+            .iter()
+            .enumerate()
+            .map(|(place, &v)| (v, place as u32))
+            .collect();
         let all = &surface.galerkin.triangles;
-        let panels = triangles
+        let panels = surface
+            .round(columns)
             .chunks(BLOCK)
             .map(|which| {
                 PanelBlock::new(surface.vertices, all, which, |t, c| {
@@ -207,13 +178,6 @@ impl<'a> Block<'a> {
         }
     }
 
-    fn width(&self) -> usize {
-        match self.columns {
-            Columns::Vertices(vertices) => vertices.len(),
-            Columns::Corners(triangles) => 3 * triangles.len(),
-        }
-    }
-
     /// Rows of the given vertices on a cluster of test triangles round them: `take` gets
     /// row, column and entry; columns may come more than once, to be added.
     fn rows_of(
@@ -222,32 +186,21 @@ impl<'a> Block<'a> {
         rows: &[u32],
         mut take: impl FnMut(usize, usize, f64),
     ) {
-        let mut first_corner = 0;
         for block in &self.panels {
-            let sources = matches!(self.columns, Columns::Corners(_));
-            let tile = self.evaluator.tile(self.surface, cluster, block, sources);
+            let doublets = self.evaluator.doublets(self.surface, cluster, block);
+            let places = block.places();
             for (i, v) in rows.iter().enumerate() {
                 let row = cluster.rows.partition_point(|x| x < v);
-                if sources {
-                    let corners = 3 * block.triangles.len();
-                    let values = &tile.sources[row * corners..(row + 1) * corners];
-                    for (c, value) in values.iter().enumerate() {
-                        take(i, first_corner + c, -value);
-                    }
-                } else {
-                    let places = block.places();
-                    let values = &tile.doublets[row * places..(row + 1) * places];
-                    for (&column, value) in block.columns.iter().zip(values) {
-                        take(i, column as usize, -value);
-                    }
+                let values = &doublets[row * places..(row + 1) * places];
+                for (&column, value) in block.columns.iter().zip(values) {
+                    take(i, column as usize, -value);
                 }
             }
-            first_corner += 3 * block.triangles.len();
         }
     }
 
     fn full(mut self) -> Mat<f64> {
-        let mut out = Mat::zeros(self.rows.len(), self.width());
+        let mut out = Mat::zeros(self.rows.len(), self.columns.len());
         let (cluster, rows) = (self.cluster.clone(), self.rows);
         self.rows_of(&cluster, rows, |i, j, value| out[(i, j)] += value);
         out
@@ -267,7 +220,7 @@ impl Entries for Block<'_> {
     }
 
     fn columns(&self) -> usize {
-        self.width()
+        self.columns.len()
     }
 
     fn row(&mut self, i: usize, out: &mut [f64]) {
@@ -280,29 +233,15 @@ impl Entries for Block<'_> {
 
     fn column(&mut self, j: usize, out: &mut [f64]) {
         let all = &self.surface.galerkin.triangles;
-        let sources = matches!(self.columns, Columns::Corners(_));
-        let block = match self.columns {
-            Columns::Vertices(vertices) => {
-                let star = &self.surface.stars[vertices[j] as usize];
-                PanelBlock::new(self.surface.vertices, all, star, |t, c| {
-                    (all[t as usize][c] == vertices[j]).then_some(0)
-                })
-            }
-            Columns::Corners(triangles) => {
-                let one = &triangles[j / 3..=j / 3];
-                PanelBlock::new(self.surface.vertices, all, one, |_, _| None)
-            }
-        };
-        let tile = self
-            .evaluator
-            .tile(self.surface, &self.cluster, &block, sources);
+        let vertex = self.columns[j];
+        let star = &self.surface.stars[vertex as usize];
+        let block = PanelBlock::new(self.surface.vertices, all, star, |t, c| {
+            (all[t as usize][c] == vertex).then_some(0)
+        });
+        let doublets = self.evaluator.doublets(self.surface, &self.cluster, &block);
         for (v, out) in self.rows.iter().zip(out) {
             let row = self.cluster.rows.partition_point(|x| x < v);
-            *out = if sources {
-                -tile.sources[3 * row + j % 3]
-            } else {
-                -tile.doublets[row * block.places()]
-            };
+            *out = -doublets[row * block.places()];
         }
     }
 }
@@ -327,8 +266,7 @@ impl HierarchicalOperator {
                 if progress.cancelled() {
                     return Err(BemError::Interrupted { stage });
                 }
-                let columns = Columns::Vertices(tree.of(pair.column));
-                let block = Block::new(&surface, tree.of(pair.row), columns);
+                let block = Block::new(&surface, tree.of(pair.row), tree.of(pair.column));
                 let stored = match block.stored(pair.is_far, tolerance) {
                     Ok(product) => Stored::Product {
                         left: single(&product.left),
@@ -494,7 +432,7 @@ fn diagonal_factors(
         .into_par_iter()
         .map(|part| {
             let (cluster, vertices) = (&tree.clusters[part], tree.of(part));
-            let block = Block::new(surface, vertices, Columns::Vertices(vertices)).full();
+            let block = Block::new(surface, vertices, vertices).full();
             let n = vertices.len();
             let mut columns: Vec<f32> = (0..n * n)
                 .map(|entry| block[(entry % n, entry / n)] as f32)
@@ -509,51 +447,4 @@ fn diagonal_factors(
             (part, BlockedLu::new(columns, n, &|_| {}))
         })
         .collect()
-}
-
-/// −S σ for every column of corner values, by compressed blocks that are not kept.
-pub(crate) fn source_potentials(
-    galerkin: &Galerkin,
-    cut: &CutSurface,
-    sources: MatRef<'_, f64>,
-    tolerance: f64,
-    progress: &dyn Progress,
-) -> Result<Mat<f64>, BemError> {
-    let surface = Surface::new(galerkin, cut);
-    let (rows, columns) = (surface.vertex_tree(), surface.triangle_tree());
-    let ordered = Mat::from_fn(sources.nrows(), sources.ncols(), |i, j| {
-        sources[(3 * columns.order[i / 3] as usize + i % 3, j)]
-    });
-    let pairs = pairs(&rows, &columns);
-    let stage = "compressing source influences";
-    progress.stage(stage, pairs.len() as u64);
-    let mut total = Mat::zeros(rows.order.len(), sources.ncols());
-    for batch in pairs.chunks(PRODUCTS_AT_ONCE) {
-        let products: Vec<Mat<f64>> = batch
-            .par_iter()
-            .map(|pair| {
-                let part = &columns.clusters[pair.column];
-                let sources = ordered.subrows(3 * part.first, 3 * (part.end - part.first));
-                let corners = Columns::Corners(columns.of(pair.column));
-                let block = Block::new(&surface, rows.of(pair.row), corners);
-                let product = match block.stored(pair.is_far, tolerance) {
-                    Ok(product) => product.left * (product.right.transpose() * sources),
-                    Err(full) => full * sources,
-                };
-                progress.advance(1);
-                product
-            })
-            .collect();
-        if progress.cancelled() {
-            return Err(BemError::Interrupted { stage });
-        }
-        for (pair, product) in batch.iter().zip(&products) {
-            for (i, &v) in rows.of(pair.row).iter().enumerate() {
-                for j in 0..product.ncols() {
-                    total[(v as usize, j)] += product[(i, j)];
-                }
-            }
-        }
-    }
-    Ok(total)
 }

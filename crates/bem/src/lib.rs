@@ -18,7 +18,7 @@
 //! | `strike` | sheets that run into bodies |
 //! | `contour`, `far_wake`, `far_tiles` | its semi-infinite part on a path in the complex plane |
 //! | `lanes`, `panel_block`, `ordering`, `tiles` | eight points at once, blocks of close panels, test triangles |
-//! | `source_columns` | products with source strengths |
+//! | `source_columns`, `source_potentials` | products with source strengths |
 //! | `skeleton`, `receiver`, `regions` | few points at which far influences are known |
 //! | `galerkin`, `near_field` | the equations |
 //! | `dense`, `blocked_lu` | their factorisation |
@@ -75,6 +75,7 @@ mod sheet_lines;
 mod skeleton;
 mod solve;
 mod source_columns;
+mod source_potentials;
 mod stations;
 mod steady;
 mod strike;

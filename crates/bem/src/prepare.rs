@@ -5,12 +5,13 @@ use crate::cut::CutSurface;
 use crate::dense::{BodyOperator, DenseOperator, Operator, Solver};
 use crate::error::BemError;
 use crate::galerkin::Galerkin;
-use crate::hierarchical::{HierarchicalOperator, source_potentials};
+use crate::hierarchical::HierarchicalOperator;
 use crate::image::Image;
 use crate::onset::OnsetBasis;
 use crate::progress::Progress;
 use crate::shape_change::{ShapeChange, check_symmetry, correct_potentials};
 use crate::solve::{Problem, check, lay_out};
+use crate::source_potentials::source_potentials;
 use crate::steady::UnitOnsets;
 use crate::transfer::solve_complex;
 use crate::wake::Wake;
@@ -164,18 +165,12 @@ impl Body<Operator> {
     ) -> Result<Self, BemError> {
         let (operator, mut potentials, free_terms) = match solver {
             Solver::Hierarchical { tolerance } => {
-                let free_terms = galerkin.closed_free_terms(progress)?;
+                let (sources, free_terms) =
+                    source_potentials(&galerkin, sources.as_ref(), progress)?;
                 let operator = HierarchicalOperator::new(
                     &galerkin,
                     surface,
                     &free_terms,
-                    tolerance,
-                    progress,
-                )?;
-                let sources = source_potentials(
-                    &galerkin,
-                    surface,
-                    sources.as_ref(),
                     tolerance,
                     progress,
                 )?;

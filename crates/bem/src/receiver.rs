@@ -169,3 +169,117 @@ impl ChosenPoints {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::galerkin::Galerkin;
+    use crate::image::Image;
+    use crate::progress::Silent;
+    use crate::regions::{Part, Regions};
+    use crate::solve::{Problem, lay_out};
+    use crate::source_potentials::source_potentials;
+    use crate::wake_influence::WakeInfluence;
+    use faer::{Mat, MatRef, c64};
+    use fladder_mesh::shapes::{Extent, NacaWing};
+    use fladder_mesh::{Symmetry, Topology, trailing_edge};
+
+    fn difference(found: MatRef<'_, f64>, expected: MatRef<'_, f64>) -> f64 {
+        (found - expected).norm_max() / expected.norm_max()
+    }
+
+    /// Everything that is received at chosen points, against the same at all test points:
+    /// matrix, right-hand sides, wake; a whole wing and half of one.
+    #[test]
+    fn chosen_points_stand_for_all_test_points() {
+        let shape = NacaWing {
+            span: 12.0,
+            n_chord: 12,
+            n_half_span: 32,
+            sweep_deg: 20.0,
+            ..NacaWing::default()
+        };
+        for (extent, symmetry, image) in [
+            (Extent::Whole, Symmetry::None, Image::None),
+            (Extent::Half, Symmetry::Antisymmetric, Image::Odd),
+        ] {
+            let mesh = NacaWing { extent, ..shape }.structured().expect("wing");
+            let edges = trailing_edge::find_by_shape(
+                &mesh,
+                &Topology::new(&mesh),
+                trailing_edge::Settings::default(),
+            );
+            let problem = Problem {
+                symmetry,
+                ..Problem::new(&mesh, &edges, &[], 0.5)
+            };
+            let (surface, wake) = lay_out(&problem, image).expect("wake");
+            let galerkin = Galerkin::new(&surface, image);
+            let mut plain = galerkin.clone();
+            for cluster in &mut plain.clusters {
+                cluster.receiver = None;
+            }
+            plain.regions = Regions::new(&plain.clusters, image);
+            let far: Vec<Part> = galerkin
+                .blocks
+                .iter()
+                .flat_map(|b| galerkin.regions.receiving(|r| r.is_far_from(b)))
+                .collect();
+            let received = |is_region: bool| {
+                far.iter()
+                    .filter(|p| matches!(p, Part::Region(_)) == is_region)
+                    .count()
+            };
+            // Columns that vary on a triangle and columns that do not.
+            let sources = Mat::from_fn(3 * mesh.triangles.len(), 2, |i, j| {
+                (((i / if j == 0 { 1 } else { 3 }) * 37 % 19) as f64 - 9.0) / 9.0
+            });
+            let [with, without] = [&galerkin, &plain]
+                .map(|g| g.assemble(sources.as_ref(), &Silent).expect("assembled"));
+            let n = galerkin.n_vertices;
+            let matrix = difference(
+                MatRef::from_row_major_slice(&with.rows, n, n),
+                MatRef::from_row_major_slice(&without.rows, n, n),
+            );
+            let right = difference(
+                with.right_hand_sides.as_ref(),
+                without.right_hand_sides.as_ref(),
+            );
+            let (alone, free) =
+                source_potentials(&galerkin, sources.as_ref(), &Silent).expect("evaluated");
+            let alone = difference(alone.as_ref(), without.right_hand_sides.as_ref());
+            assert_eq!(free, without.free_terms);
+            let left = Mat::from_fn(n, 5, |i, j| (((i * (j + 3)) % 17) as f64 - 8.0) / 8.0);
+            let columns = surface.columns.len();
+            let [with, without] = [&galerkin, &plain].map(|galerkin| {
+                let influence = WakeInfluence {
+                    galerkin,
+                    wake: &wake,
+                    free_terms: &free,
+                };
+                let blocks = influence.blocks(left.as_ref(), &Silent).expect("blocks");
+                let steady = influence.steady(columns, &Silent).expect("steady");
+                let at_one = influence
+                    .tested(c64::new(-0.1, 0.4), columns, &Silent)
+                    .expect("tested");
+                let real = Mat::from_fn(n, columns, |i, j| at_one[(i, j)].re);
+                let mut all = vec![blocks.near, steady, real];
+                all.extend(blocks.far);
+                all
+            });
+            let sheet = with
+                .iter()
+                .zip(&without)
+                .map(|(a, b)| difference(a.as_ref(), b.as_ref()))
+                .fold(0.0, f64::max);
+            println!(
+                "{image:?}: {} blocks to regions, {} to clusters; matrix {matrix:.1e}, \
+                 right-hand sides {right:.1e} and {alone:.1e}, wake {sheet:.1e}",
+                received(true),
+                received(false)
+            );
+            assert!(received(true) > 10);
+            // Interpolation to 1e-9 of a charge's potential; influences have its slope.
+            assert!(matrix.max(right).max(alone).max(sheet) < 1e-8);
+        }
+    }
+}

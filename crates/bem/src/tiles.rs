@@ -274,32 +274,6 @@ impl TileScratch {
         }
     }
 
-    /// Adds what the divided test triangles change of Σ D over the block, without the
-    /// image's sign, to `sums` of a group.
-    pub(crate) fn near_sums(
-        &self,
-        galerkin: &Galerkin,
-        group: &TestGroup,
-        block: &PanelBlock,
-        sums: &mut PointValues,
-    ) {
-        for (image, seen) in group.seen.iter().enumerate() {
-            if !seen.is_near(block) {
-                continue;
-            }
-            let tests = [&galerkin.tests, &galerkin.image_tests][image];
-            for (lane, &t) in group.triangles.iter().enumerate() {
-                let test = &tests[t as usize];
-                for panel in test.near(&block.spheres) {
-                    let change = test.change(&block.near(self.arch, panel, &test.near_points));
-                    for (sum, corners) in sums.iter_mut().zip(&change.doublets) {
-                        sum[lane] += corners.iter().sum::<f64>();
-                    }
-                }
-            }
-        }
-    }
-
     /// D and S of a block at the points of a group and at their images.
     fn at_points(
         &mut self,
