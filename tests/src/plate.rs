@@ -26,6 +26,7 @@ impl Planform {
             thickness,
             n_chord: cells.chord,
             n_half_span: cells.half_span,
+            nose_clustering: cells.nose,
             ..NacaWing::default()
         };
         match self {
@@ -69,6 +70,7 @@ impl Planform {
                 Cells {
                     chord: 3,
                     half_span: 1,
+                    nose: 0.0,
                 },
             )
             .chord

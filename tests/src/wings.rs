@@ -26,6 +26,8 @@ pub struct Cells {
     pub chord: usize,
     /// From root to tip at aspect ratio 8; up to a quarter less or more for other spans.
     pub half_span: usize,
+    /// Shortening of the cells at the nose, [`NacaWing::nose_clustering`].
+    pub nose: f64,
 }
 
 /// How the points of a mesh lie.
@@ -85,6 +87,7 @@ fn rectangular(aspect_ratio: f64, thickness: f64, cells: Cells) -> NacaWing {
         span: aspect_ratio,
         n_chord: cells.chord,
         n_half_span: (cells.half_span as f64 * share).round() as usize,
+        nose_clustering: cells.nose,
         ..NacaWing::default()
     }
 }

@@ -9,6 +9,7 @@ use fladder_tests::wings::{Cells, Goals, Kind, plates, thick};
 const CELLS: Cells = Cells {
     chord: 20,
     half_span: 12,
+    nose: 0.0,
 };
 
 /// Two and three times the goal on fine meshes: pressures converge at first order.
@@ -23,6 +24,7 @@ fn lift_slopes_of_plates() {
     let cells = Cells {
         chord: 16,
         half_span: 10,
+        nose: 0.0,
     };
     let rows = plates(
         cells,
@@ -43,6 +45,7 @@ fn a_section_obeys_theodorsen_anywhere_in_the_laplace_plane() {
         aspect_ratio: 60.0,
         n_chord: 24,
         n_half_span: 6,
+        nose: 0.0,
     };
     assert!(report(&theodorsen(&wing, 0.03).expect("solved")));
 }
@@ -67,6 +70,7 @@ fn q_of_a_swept_tapered_plate() {
     let cells = Cells {
         chord: 16,
         half_span: 10,
+        nose: 0.0,
     };
     let plate = Plate::new(Planform::Swept, Kind::Structured, cells).expect("solved");
     let rows = plate.compare("dlm_gaf_agard_planform.csv", "swept", |_| 0.03);

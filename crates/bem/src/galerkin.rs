@@ -33,6 +33,10 @@ use rayon::prelude::*;
 /// Clusters whose rows are held in memory at once.
 pub(crate) const CLUSTERS_AT_ONCE: usize = 8;
 
+/// Triangles of a surface up to which every influence is evaluated at every test point: it
+/// takes a second or two, and what is zero by symmetry stays zero to rounding.
+const EVALUATED_EVERYWHERE: usize = 4096;
+
 /// Test triangles of the regions' levels, of a cluster, of a block of panels, of a group.
 const RUNS: [usize; 5] = [
     TOGETHER * TOGETHER * CLUSTER,
@@ -192,9 +196,16 @@ impl Galerkin {
             regions: Regions::default(),
             blocks,
         };
+        let is_large = order.len() > EVALUATED_EVERYWHERE;
         galerkin.clusters = order
             .par_chunks(CLUSTER)
-            .map(|triangles| TestCluster::receiving(&galerkin, triangles))
+            .map(|triangles| {
+                if is_large {
+                    TestCluster::receiving(&galerkin, triangles)
+                } else {
+                    TestCluster::new(&galerkin, triangles)
+                }
+            })
             .collect();
         galerkin.regions = Regions::new(&galerkin.clusters, image);
         galerkin

@@ -1,344 +1,303 @@
-//! The body operator as a hierarchical matrix.
+//! The body operator for more unknowns than a matrix can hold.
 //!
-//! Vertices are gathered in a tree of clusters. The block of test functions I and columns
-//! J is kept as a product of two narrow matrices where the clusters are far from each other
-//! ([`crate::aca`]) and entry by entry where they are near; the free terms are a sparse
-//! matrix beside them. Memory and work grow as n log n.
+//! The rows of a cluster of test triangles are kept entry by entry over the vertices near
+//! it. What is far from a cluster or a region is kept as the product of its matrix T W with
+//! the influences at its chosen points ([`crate::receiver`]); they are the same for all
+//! that is far, so that nothing has to be approximated block by block. Memory and work
+//! grow as n log n.
 //!
 //! The equation is of the second kind, and the iteration ([`crate::krylov`]) needs some tens
 //! of steps whatever the mesh. All right-hand sides are multiplied together, in chunks that
 //! do not depend on the number of threads.
 
-use crate::aca::{Entries, LowRank, approximate};
 use crate::blocked_lu::BlockedLu;
-use crate::cluster_tree::{ClusterTree, Pair, pairs};
-use crate::cut::CutSurface;
 use crate::dense::BodyOperator;
 use crate::error::BemError;
 use crate::galerkin::Galerkin;
 use crate::krylov::solve_block;
 use crate::lanes::WIDTH;
 use crate::near_field::POINTS;
-use crate::panel_block::{BLOCK, PanelBlock};
 use crate::progress::Progress;
-use crate::tiles::{PointValues, TestCluster, Tile, TileScratch};
+use crate::received::{Placed, Received, columns_of, received};
+use crate::source_columns::SourceColumns;
+use crate::tiles::{PointValues, Tile, TileScratch, free_terms};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
-use fladder_mesh::Vec3;
 use rayon::prelude::*;
 
-/// Right-hand sides multiplied together by one thread.
-const TOGETHER: usize = 32;
+/// Right-hand sides multiplied together by one thread, and from how many unknowns on only
+/// half as many, their Krylov spaces being large.
+const TOGETHER: usize = 64;
+const MANY: usize = 40_000;
 
-/// Residual of a solution, in tolerances of the blocks.
+/// Residual of a solution, in tolerances.
 const RESIDUAL: f64 = 0.2;
 
-/// Unknowns of a diagonal block.
-const DIAGONAL: usize = 256;
+/// Clusters whose vertices have a diagonal block together.
+const CLUSTERS_OF_A_DIAGONAL: usize = 2;
 
 /// c φ − D φ.
 #[derive(Debug)]
 pub(crate) struct HierarchicalOperator {
-    tree: ClusterTree,
-    blocks: Vec<(Pair, Stored)>,
-    /// Free terms in the order of the tree: row, column and value.
-    local: Vec<(u32, u32, f32)>,
-    /// Factors of diagonal blocks, and the clusters they belong to.
-    diagonal: Vec<(usize, BlockedLu<f32>)>,
+    size: usize,
+    parts: Vec<StoredPart>,
+    /// Vertices whose potential is zero.
+    constrained: Vec<usize>,
+    /// Vertices of the diagonal blocks and their factors.
+    diagonal: Vec<(Vec<u32>, BlockedLu<f32>)>,
     tolerance: f64,
 }
 
-/// A block; single precision has seven digits, tolerances are above.
+/// Rows of a region or cluster; single precision has seven digits, tolerances are above.
 #[derive(Debug)]
-enum Stored {
-    Full(Mat<f32>),
-    Product { left: Mat<f32>, right: Mat<f32> },
+struct StoredPart {
+    rows: Vec<u32>,
+    near: Block,
+    far: Block,
+    /// T W: rows × chosen points, which are the far block's rows.
+    tested: Mat<f32>,
 }
 
-fn single(matrix: &Mat<f64>) -> Mat<f32> {
-    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)] as f32)
+/// Entries over some columns.
+#[derive(Debug)]
+struct Block {
+    columns: Vec<u32>,
+    values: Mat<f32>,
 }
 
-/// What the blocks are made from.
-struct Surface<'a> {
-    galerkin: &'a Galerkin,
-    vertices: &'a [Vec3],
-    /// Triangles at each vertex.
-    stars: Vec<Vec<u32>>,
+/// The operator, −S σ for every source column, and the free term at every test point.
+pub(crate) struct Assembled {
+    pub(crate) operator: HierarchicalOperator,
+    pub(crate) right_hand_sides: Mat<f64>,
+    pub(crate) free_terms: Vec<f64>,
 }
 
-impl<'a> Surface<'a> {
-    fn new(galerkin: &'a Galerkin, surface: &'a CutSurface) -> Self {
-        let mut stars = vec![Vec::new(); surface.vertices.len()];
-        for (t, corners) in surface.triangles.iter().enumerate() {
-            for &v in corners {
-                stars[v as usize].push(t as u32);
-            }
-        }
+/// What the evaluation of a part gives.
+struct Evaluated {
+    stored: StoredPart,
+    /// S σ at the rows.
+    sources: Mat<f64>,
+    free: Vec<PointValues>,
+}
+
+impl Block {
+    fn zeros(rows: usize, blocks: &[Placed<'_>]) -> Self {
+        let columns = columns_of(blocks);
         Self {
-            galerkin,
-            vertices: &surface.vertices,
-            stars,
-        }
-    }
-
-    /// Vertices with the triangles round them.
-    fn vertex_tree(&self) -> ClusterTree {
-        let spheres: Vec<(Vec3, f64)> = self
-            .stars
-            .iter()
-            .zip(self.vertices)
-            .map(|(star, centre)| {
-                let reach = star
-                    .iter()
-                    .flat_map(|&t| self.galerkin.triangles[t as usize])
-                    .map(|v| (self.vertices[v as usize] - centre).norm())
-                    .fold(0.0, f64::max);
-                (*centre, reach)
-            })
-            .collect();
-        ClusterTree::new(&spheres)
-    }
-
-    /// Triangles round some vertices, each once, in the order of the vertices.
-    fn round(&self, vertices: &[u32]) -> Vec<u32> {
-        let mut seen = std::collections::HashSet::new();
-        vertices
-            .iter()
-            .flat_map(|&v| &self.stars[v as usize])
-            .copied()
-            .filter(|t| seen.insert(*t))
-            .collect()
-    }
-}
-
-/// Evaluates tiles and throws away what the row sums change by.
-#[derive(Default)]
-struct Evaluator {
-    scratch: TileScratch,
-    tile: Tile,
-    changes: Vec<PointValues>,
-}
-
-impl Evaluator {
-    fn doublets(
-        &mut self,
-        surface: &Surface<'_>,
-        cluster: &TestCluster,
-        block: &PanelBlock,
-    ) -> &[f64] {
-        self.changes.clear();
-        self.changes.resize(cluster.groups.len(), [[0.0; WIDTH]; 3]);
-        self.scratch.fill(
-            surface.galerkin,
-            cluster,
-            block,
-            false,
-            &mut self.tile,
-            &mut self.changes,
-        );
-        &self.tile.doublets
-    }
-}
-
-/// −D of jumps at some vertices, row by row and column by column.
-struct Block<'a> {
-    surface: &'a Surface<'a>,
-    rows: &'a [u32],
-    columns: &'a [u32],
-    panels: Vec<PanelBlock>,
-    cluster: TestCluster,
-    evaluator: Evaluator,
-}
-
-impl<'a> Block<'a> {
-    fn new(surface: &'a Surface<'a>, rows: &'a [u32], columns: &'a [u32]) -> Self {
-        let places: std::collections::HashMap<u32, u32> = columns
-            .iter()
-            .enumerate()
-            .map(|(place, &v)| (v, place as u32))
-            .collect();
-        let all = &surface.galerkin.triangles;
-        let panels = surface
-            .round(columns)
-            .chunks(BLOCK)
-            .map(|which| {
-                PanelBlock::new(surface.vertices, all, which, |t, c| {
-                    places.get(&all[t as usize][c]).copied()
-                })
-            })
-            .collect();
-        Self {
-            cluster: TestCluster::new(surface.galerkin, &surface.round(rows)),
-            evaluator: Evaluator::default(),
-            surface,
-            rows,
+            values: Mat::zeros(rows, columns.len()),
             columns,
-            panels,
         }
     }
 
-    /// Rows of the given vertices on a cluster of test triangles round them: `take` gets
-    /// row, column and entry; columns may come more than once, to be added.
-    fn rows_of(
-        &mut self,
-        cluster: &TestCluster,
-        rows: &[u32],
-        mut take: impl FnMut(usize, usize, f64),
-    ) {
-        for block in &self.panels {
-            let doublets = self.evaluator.doublets(self.surface, cluster, block);
-            let places = block.places();
-            for (i, v) in rows.iter().enumerate() {
-                let row = cluster.rows.partition_point(|x| x < v);
-                let values = &doublets[row * places..(row + 1) * places];
-                for (&column, value) in block.columns.iter().zip(values) {
-                    take(i, column as usize, -value);
+    fn place(&self, column: u32) -> usize {
+        self.columns.partition_point(|x| *x < column)
+    }
+}
+
+impl StoredPart {
+    /// Y += A X over these rows and columns, or with their transpose.
+    fn multiply(&self, x: &Mat<f32>, y: &mut Mat<f32>, transposed: bool) {
+        if transposed {
+            let x = gathered(x, &self.rows);
+            let near = product(self.near.values.transpose(), x.as_ref());
+            scatter(&near, &self.near.columns, y);
+            if !self.far.columns.is_empty() {
+                let inner = product(self.tested.transpose(), x.as_ref());
+                let far = product(self.far.values.transpose(), inner.as_ref());
+                scatter(&far, &self.far.columns, y);
+            }
+        } else {
+            let part = gathered(x, &self.near.columns);
+            let mut rows = product(self.near.values.as_ref(), part.as_ref());
+            if !self.far.columns.is_empty() {
+                let part = gathered(x, &self.far.columns);
+                let inner = product(self.far.values.as_ref(), part.as_ref());
+                matmul(&mut rows, Accum::Add, &self.tested, &inner, 1.0, Par::Seq);
+            }
+            scatter(&rows, &self.rows, y);
+        }
+    }
+}
+
+fn product(a: MatRef<'_, f32>, b: MatRef<'_, f32>) -> Mat<f32> {
+    let mut out = Mat::zeros(a.nrows(), b.ncols());
+    matmul(&mut out, Accum::Replace, a, b, 1.0, Par::Seq);
+    out
+}
+
+/// Some rows of a matrix.
+fn gathered(x: &Mat<f32>, rows: &[u32]) -> Mat<f32> {
+    Mat::from_fn(rows.len(), x.ncols(), |i, j| x[(rows[i] as usize, j)])
+}
+
+/// Adds rows to their places.
+fn scatter(values: &Mat<f32>, rows: &[u32], out: &mut Mat<f32>) {
+    for j in 0..values.ncols() {
+        for (i, &row) in rows.iter().enumerate() {
+            out[(row as usize, j)] += values[(i, j)];
+        }
+    }
+}
+
+impl Evaluated {
+    fn new(
+        part: &Received<'_>,
+        galerkin: &Galerkin,
+        sources: &SourceColumns,
+        (scratch, tile): &mut (TileScratch, Tile),
+    ) -> Self {
+        let height = part.rows.len();
+        let mut near = Block::zeros(height, &part.near);
+        let mut near_sources = sources.zeros(height);
+        let mut free = Vec::new();
+        if let Some((_, cluster)) = part.cluster {
+            let mut changes = vec![[[0.0; WIDTH]; 3]; cluster.groups.len()];
+            for Placed { block, first } in &part.near {
+                scratch.fill(galerkin, cluster, block, true, tile, &mut changes);
+                for (place, &v) in block.columns.iter().enumerate() {
+                    let column = near.place(v);
+                    for r in 0..height {
+                        let value = tile.doublets[r * block.places() + place];
+                        near.values[(r, column)] -= value as f32;
+                    }
+                }
+                sources.add_by_rows(*first, &tile.sources, &mut near_sources);
+            }
+            free = changes.iter().map(free_terms).collect();
+            for (group, free) in cluster.groups.iter().zip(&free) {
+                for (lane, &t) in group.triangles.iter().enumerate() {
+                    for (j, &v) in galerkin.triangles[t as usize].iter().enumerate() {
+                        let column = near.place(v);
+                        for (weights, rows) in group.weights.iter().zip(&group.rows) {
+                            let sum: f64 = (0..3)
+                                .map(|q| weights[q][lane] * free[q][lane] * POINTS[q][j])
+                                .sum();
+                            near.values[(rows[lane] as usize, column)] += sum as f32;
+                        }
+                    }
                 }
             }
         }
-    }
-
-    fn full(mut self) -> Mat<f64> {
-        let mut out = Mat::zeros(self.rows.len(), self.columns.len());
-        let (cluster, rows) = (self.cluster.clone(), self.rows);
-        self.rows_of(&cluster, rows, |i, j, value| out[(i, j)] += value);
-        out
-    }
-
-    fn stored(mut self, is_far: bool, tolerance: f64) -> Result<LowRank, Mat<f64>> {
-        if is_far && let Some(product) = approximate(&mut self, tolerance) {
-            return Ok(product);
+        let mut sum = sources.in_order(&near_sources);
+        let (mut far, mut tested) = (Block::zeros(0, &[]), Mat::new());
+        if let Some(receiver) = part.receiver.filter(|_| !part.far.is_empty()) {
+            let width = receiver.width();
+            far = Block::zeros(width, &part.far);
+            let mut far_sources = sources.zeros(width);
+            for Placed { block, first } in &part.far {
+                scratch.fill_far(receiver, block, true, tile);
+                for (&v, values) in block.columns.iter().zip(tile.doublets.chunks(width)) {
+                    let column = far.place(v);
+                    for (k, value) in values.iter().enumerate() {
+                        far.values[(k, column)] -= *value as f32;
+                    }
+                }
+                sources.add_by_columns(*first, &tile.sources, &mut far_sources);
+            }
+            sum += &receiver.tested * sources.in_order(&far_sources);
+            tested = Mat::from_fn(height, width, |i, k| receiver.tested[(i, k)] as f32);
         }
-        Err(self.full())
-    }
-}
-
-impl Entries for Block<'_> {
-    fn rows(&self) -> usize {
-        self.rows.len()
-    }
-
-    fn columns(&self) -> usize {
-        self.columns.len()
-    }
-
-    fn row(&mut self, i: usize, out: &mut [f64]) {
-        out.fill(0.0);
-        let vertex = self.rows[i];
-        let cluster =
-            TestCluster::new(self.surface.galerkin, &self.surface.stars[vertex as usize]);
-        self.rows_of(&cluster, &[vertex], |_, j, value| out[j] += value);
-    }
-
-    fn column(&mut self, j: usize, out: &mut [f64]) {
-        let all = &self.surface.galerkin.triangles;
-        let vertex = self.columns[j];
-        let star = &self.surface.stars[vertex as usize];
-        let block = PanelBlock::new(self.surface.vertices, all, star, |t, c| {
-            (all[t as usize][c] == vertex).then_some(0)
-        });
-        let doublets = self.evaluator.doublets(self.surface, &self.cluster, &block);
-        for (v, out) in self.rows.iter().zip(out) {
-            let row = self.cluster.rows.partition_point(|x| x < v);
-            *out = -doublets[row * block.places()];
+        Self {
+            stored: StoredPart {
+                rows: part.rows.to_vec(),
+                near,
+                far,
+                tested,
+            },
+            sources: sum,
+            free,
         }
     }
 }
 
 impl HierarchicalOperator {
-    /// Evaluates and compresses.
-    pub(crate) fn new(
+    /// Evaluates everything; `sources` holds σ at triangle corners, row 3 t + corner.
+    pub(crate) fn assemble(
         galerkin: &Galerkin,
-        cut: &CutSurface,
-        free_terms: &[f64],
+        sources: MatRef<'_, f64>,
         tolerance: f64,
         progress: &dyn Progress,
-    ) -> Result<Self, BemError> {
-        let surface = Surface::new(galerkin, cut);
-        let tree = surface.vertex_tree();
-        let pairs = pairs(&tree, &tree);
-        let stage = "compressing body influences";
-        progress.stage(stage, pairs.len() as u64);
-        let blocks: Vec<(Pair, Stored)> = pairs
-            .into_par_iter()
-            .map(|pair| {
+    ) -> Result<Assembled, BemError> {
+        let sources = SourceColumns::new(sources, &galerkin.blocks);
+        let all = received(galerkin);
+        let stage = "assembling body influences";
+        progress.stage(stage, all.len() as u64);
+        let evaluated: Vec<Evaluated> = all
+            .par_iter()
+            .map_init(Default::default, |working, part| {
                 if progress.cancelled() {
                     return Err(BemError::Interrupted { stage });
                 }
-                let block = Block::new(&surface, tree.of(pair.row), tree.of(pair.column));
-                let stored = match block.stored(pair.is_far, tolerance) {
-                    Ok(product) => Stored::Product {
-                        left: single(&product.left),
-                        right: single(&product.right),
-                    },
-                    Err(full) => Stored::Full(single(&full)),
-                };
+                let evaluated = Evaluated::new(part, galerkin, &sources, working);
                 progress.advance(1);
-                Ok((pair, stored))
+                Ok(evaluated)
             })
             .collect::<Result<_, _>>()?;
-        let local = local_terms(galerkin, &tree, free_terms);
-        let diagonal = diagonal_factors(&surface, &tree, &local);
-        Ok(Self {
-            tree,
-            blocks,
-            local,
-            diagonal,
-            tolerance,
+        let mut right_hand_sides = Mat::zeros(galerkin.n_vertices, sources.len());
+        let mut free = vec![0.0; 3 * galerkin.n_triangles()];
+        let mut parts = Vec::with_capacity(all.len());
+        for (part, evaluated) in all.iter().zip(evaluated) {
+            for j in 0..sources.len() {
+                for (i, &v) in part.rows.iter().enumerate() {
+                    right_hand_sides[(v as usize, j)] -= evaluated.sources[(i, j)];
+                }
+            }
+            if let Some((_, cluster)) = part.cluster {
+                for (group, values) in cluster.groups.iter().zip(&evaluated.free) {
+                    for (lane, &t) in group.triangles.iter().enumerate() {
+                        for (q, values) in values.iter().enumerate() {
+                            free[3 * t as usize + q] = values[lane];
+                        }
+                    }
+                }
+            }
+            parts.push(evaluated.stored);
+        }
+        let constrained: Vec<usize> = galerkin.constrained().collect();
+        let clusters: Vec<&StoredPart> = all
+            .iter()
+            .zip(&parts)
+            .filter_map(|(part, stored)| part.cluster.map(|_| stored))
+            .collect();
+        let diagonal = diagonal_factors(&clusters, galerkin.n_vertices, &constrained);
+        Ok(Assembled {
+            operator: Self {
+                size: galerkin.n_vertices,
+                parts,
+                constrained,
+                diagonal,
+                tolerance,
+            },
+            right_hand_sides,
+            free_terms: free,
         })
     }
 
     /// M⁻¹ X or M⁻ᵀ X, M the diagonal blocks.
-    fn precondition(&self, x: MatRef<'_, f64>, transposed: bool) -> Mat<f64> {
-        let mut y = Mat::<f32>::from_fn(x.nrows(), x.ncols(), |i, j| x[(i, j)] as f32);
-        for (cluster, factors) in &self.diagonal {
-            let cluster = &self.tree.clusters[*cluster];
-            let part = y.subrows_mut(cluster.first, cluster.end - cluster.first);
-            factors.solve_alone(part, transposed);
+    fn precondition(&self, x: MatRef<'_, f64>, transposed: bool) -> Mat<f32> {
+        let mut y = Mat::<f32>::zeros(x.nrows(), x.ncols());
+        for (vertices, factors) in &self.diagonal {
+            let mut part = Mat::<f32>::from_fn(vertices.len(), x.ncols(), |i, j| {
+                x[(vertices[i] as usize, j)] as f32
+            });
+            factors.solve_alone(part.as_mut(), transposed);
+            scatter(&part, vertices, &mut y);
         }
-        Mat::from_fn(x.nrows(), x.ncols(), |i, j| f64::from(y[(i, j)]))
+        y
     }
 
-    /// A X or Aᵀ X, rows in the order of the tree; by one thread.
-    fn product(&self, x: MatRef<'_, f64>, transposed: bool) -> Mat<f64> {
-        let (n, k) = (x.nrows(), x.ncols());
-        let x = Mat::<f32>::from_fn(n, k, |i, j| x[(i, j)] as f32);
-        let mut y = Mat::<f32>::zeros(n, k);
-        for (pair, stored) in &self.blocks {
-            let row = &self.tree.clusters[pair.row];
-            let column = &self.tree.clusters[pair.column];
-            let (from, to) = if transposed {
-                (row, column)
-            } else {
-                (column, row)
-            };
-            let part = x.subrows(from.first, from.end - from.first);
-            let mut out = y.subrows_mut(to.first, to.end - to.first);
-            match stored {
-                Stored::Full(matrix) if transposed => {
-                    add_product(matrix.transpose(), part, &mut out);
-                }
-                Stored::Full(matrix) => add_product(matrix.as_ref(), part, &mut out),
-                Stored::Product { left, right } => {
-                    let (first, second) = if transposed {
-                        (left, right)
-                    } else {
-                        (right, left)
-                    };
-                    let mut inner = Mat::<f32>::zeros(first.ncols(), k);
-                    add_product(first.transpose(), part, &mut inner.as_mut());
-                    add_product(second.as_ref(), inner.as_ref(), &mut out);
-                }
+    /// A X or Aᵀ X; by one thread.
+    fn product(&self, x: &Mat<f32>, transposed: bool) -> Mat<f64> {
+        let mut y = Mat::<f32>::zeros(self.size, x.ncols());
+        for part in &self.parts {
+            part.multiply(x, &mut y, transposed);
+        }
+        for &v in &self.constrained {
+            for j in 0..x.ncols() {
+                y[(v, j)] += x[(v, j)];
             }
         }
-        for &(i, j, value) in &self.local {
-            let (i, j) = if transposed { (j, i) } else { (i, j) };
-            for c in 0..k {
-                y[(i as usize, c)] += value * x[(j as usize, c)];
-            }
-        }
-        Mat::from_fn(n, k, |i, j| f64::from(y[(i, j)]))
+        Mat::from_fn(self.size, x.ncols(), |i, j| f64::from(y[(i, j)]))
     }
 
     fn solve_either(
@@ -348,34 +307,31 @@ impl HierarchicalOperator {
         progress: &dyn Progress,
     ) -> Result<(), BemError> {
         let stage = "iterating";
-        let chunks = b.ncols().div_ceil(TOGETHER);
-        progress.stage(stage, chunks as u64);
-        let order = &self.tree.order;
-        b.par_col_chunks_mut(TOGETHER).try_for_each(|mut part| {
-            let right = Mat::from_fn(part.nrows(), part.ncols(), |i, j| {
-                part[(order[i] as usize, j)]
-            });
-            let apply = |x: MatRef<'_, f64>| {
-                (!progress.cancelled()).then(|| {
-                    self.product(self.precondition(x, transposed).as_ref(), transposed)
-                })
-            };
-            let solution = solve_block(apply, &right, RESIDUAL * self.tolerance)
-                .map_err(|failure| failure.into_error(stage))?;
-            let solution = self.precondition(solution.as_ref(), transposed);
-            for (i, &v) in order.iter().enumerate() {
+        let together = if self.size < MANY {
+            TOGETHER
+        } else {
+            TOGETHER / 2
+        };
+        progress.stage(stage, b.ncols().div_ceil(together) as u64);
+        b.par_col_chunks_mut(together)
+            .try_for_each(|mut part: MatMut<'_, f64>| {
+                let apply = |x: MatRef<'_, f64>| {
+                    (!progress.cancelled())
+                        .then(|| self.product(&self.precondition(x, transposed), transposed))
+                };
+                let right = part.as_ref().to_owned();
+                let solution = solve_block(apply, &right, RESIDUAL * self.tolerance)
+                    .map_err(|failure| failure.into_error(stage))?;
+                let solution = self.precondition(solution.as_ref(), transposed);
                 for j in 0..part.ncols() {
-                    part[(v as usize, j)] = solution[(i, j)];
+                    for i in 0..part.nrows() {
+                        part[(i, j)] = f64::from(solution[(i, j)]);
+                    }
                 }
-            }
-            progress.advance(1);
-            Ok(())
-        })
+                progress.advance(1);
+                Ok(())
+            })
     }
-}
-
-fn add_product(a: MatRef<'_, f32>, b: MatRef<'_, f32>, out: &mut MatMut<'_, f32>) {
-    matmul(out.as_mut(), Accum::Add, a, b, 1.0, Par::Seq);
 }
 
 impl BodyOperator for HierarchicalOperator {
@@ -392,59 +348,50 @@ impl BodyOperator for HierarchicalOperator {
     }
 }
 
-/// c Σ_q w_iq N_j(q) of every triangle, and ones where the potential is given.
-fn local_terms(
-    galerkin: &Galerkin,
-    tree: &ClusterTree,
-    free_terms: &[f64],
-) -> Vec<(u32, u32, f32)> {
-    let mut place = vec![0; tree.order.len()];
-    for (i, &v) in tree.order.iter().enumerate() {
-        place[v as usize] = i as u32;
+/// Factors of the entries between the vertices of a few clusters, each vertex in the first
+/// cluster that has it.
+fn diagonal_factors(
+    clusters: &[&StoredPart],
+    size: usize,
+    constrained: &[usize],
+) -> Vec<(Vec<u32>, BlockedLu<f32>)> {
+    let mut groups: Vec<Vec<u32>> = Vec::new();
+    let mut place = vec![(usize::MAX, 0); size];
+    for (g, few) in clusters.chunks(CLUSTERS_OF_A_DIAGONAL).enumerate() {
+        let mut vertices = Vec::new();
+        for &v in few.iter().flat_map(|part| &part.rows) {
+            if place[v as usize].0 == usize::MAX {
+                place[v as usize] = (g, vertices.len());
+                vertices.push(v);
+            }
+        }
+        groups.push(vertices);
     }
-    let mut local = Vec::new();
-    for (t, corners) in galerkin.triangles.iter().enumerate() {
-        for (i, &row) in corners.iter().enumerate() {
-            for (j, &column) in corners.iter().enumerate() {
-                let sum: f64 = POINTS
-                    .iter()
-                    .enumerate()
-                    .map(|(q, shape)| {
-                        galerkin.test_weight(t, q, i) * free_terms[3 * t + q] * shape[j]
-                    })
-                    .sum();
-                local.push((place[row as usize], place[column as usize], sum as f32));
+    // By columns.
+    let mut entries: Vec<Vec<f32>> = groups.iter().map(|v| vec![0.0; v.len().pow(2)]).collect();
+    for part in clusters {
+        for (c, &w) in part.near.columns.iter().enumerate() {
+            let (group, column) = place[w as usize];
+            for (r, &v) in part.rows.iter().enumerate() {
+                let (row_group, row) = place[v as usize];
+                if row_group == group {
+                    entries[group][column * groups[group].len() + row] +=
+                        part.near.values[(r, c)];
+                }
             }
         }
     }
-    for v in galerkin.constrained() {
-        local.push((place[v], place[v], 1.0));
+    for &v in constrained {
+        let (group, at) = place[v];
+        entries[group][at * groups[group].len() + at] += 1.0;
     }
-    local
-}
-
-fn diagonal_factors(
-    surface: &Surface<'_>,
-    tree: &ClusterTree,
-    local: &[(u32, u32, f32)],
-) -> Vec<(usize, BlockedLu<f32>)> {
-    tree.parts(DIAGONAL)
+    groups
         .into_par_iter()
-        .map(|part| {
-            let (cluster, vertices) = (&tree.clusters[part], tree.of(part));
-            let block = Block::new(surface, vertices, vertices).full();
+        .zip(entries)
+        .filter(|(vertices, _)| !vertices.is_empty())
+        .map(|(vertices, entries)| {
             let n = vertices.len();
-            let mut columns: Vec<f32> = (0..n * n)
-                .map(|entry| block[(entry % n, entry / n)] as f32)
-                .collect();
-            let own = cluster.first..cluster.end;
-            for &(i, j, value) in local {
-                let (i, j) = (i as usize, j as usize);
-                if own.contains(&i) && own.contains(&j) {
-                    columns[(j - cluster.first) * n + i - cluster.first] += value;
-                }
-            }
-            (part, BlockedLu::new(columns, n, &|_| {}))
+            (vertices, BlockedLu::new(entries, n, &|_| {}))
         })
         .collect()
 }

@@ -18,13 +18,13 @@
 //! | `strike` | sheets that run into bodies |
 //! | `contour`, `far_wake`, `far_tiles` | its semi-infinite part on a path in the complex plane |
 //! | `lanes`, `panel_block`, `ordering`, `tiles` | eight points at once, blocks of close panels, test triangles |
-//! | `source_columns`, `source_potentials` | products with source strengths |
-//! | `skeleton`, `receiver`, `regions` | few points at which far influences are known |
+//! | `source_columns` | products with source strengths |
+//! | `skeleton`, `receiver`, `regions`, `received` | few points at which far influences are known |
 //! | `galerkin`, `near_field` | the equations |
 //! | `dense`, `blocked_lu` | their factorisation |
-//! | `cluster_tree`, `aca`, `hierarchical`, `krylov` | the same for more unknowns than a matrix can hold |
+//! | `hierarchical`, `krylov` | the same for more unknowns than a matrix can hold |
 //! | `image` | half models |
-//! | `guards` | what the mesh resolves |
+//! | `guards`, `nose` | what the mesh resolves |
 //! | `onset`, `boundary`, `pressure`, `steady` | modes in, forces out, steady flow |
 //! | `shape_change` | elastic columns with the influences of the deformed surface |
 //! | `prepare`, `surface_flow` | factorised body and steady flow; pressures for pictures |
@@ -33,7 +33,6 @@
 //!
 //! Nothing here knows about files, clocks or terminals.
 
-mod aca;
 mod adjacency;
 mod blocked_lu;
 mod blocks;
@@ -42,7 +41,6 @@ mod body_path;
 mod body_trace;
 mod boundary;
 mod carry;
-mod cluster_tree;
 mod contour;
 mod cut;
 mod dense;
@@ -58,6 +56,7 @@ mod image;
 mod krylov;
 mod lanes;
 mod near_field;
+mod nose;
 mod onset;
 mod ordering;
 mod panel_block;
@@ -67,6 +66,7 @@ pub mod pieces;
 mod prepare;
 mod pressure;
 mod progress;
+mod received;
 mod receiver;
 mod reduce;
 mod regions;
@@ -75,7 +75,6 @@ mod sheet_lines;
 mod skeleton;
 mod solve;
 mod source_columns;
-mod source_potentials;
 mod stations;
 mod steady;
 mod strike;

@@ -11,7 +11,6 @@ use crate::onset::OnsetBasis;
 use crate::progress::Progress;
 use crate::shape_change::{ShapeChange, check_symmetry, correct_potentials};
 use crate::solve::{Problem, check, lay_out};
-use crate::source_potentials::source_potentials;
 use crate::steady::UnitOnsets;
 use crate::transfer::solve_complex;
 use crate::wake::Wake;
@@ -67,34 +66,19 @@ impl Prepared<Operator> {
         let mut flow_wake = None;
         let (body, onsets) = if flow == motion {
             let all = concatenate(&[&sources, &onset_sources(&galerkin)]);
-            let body = Body::factorise(
-                &surface,
-                galerkin,
-                &all,
-                &selector,
-                problem.solver,
-                progress,
-            )?;
+            let body = Body::factorise(galerkin, &all, &selector, problem.solver, progress)?;
             let onsets = body.steady_onsets(&wake, &selector, sources.ncols(), progress)?;
             (body, onsets)
         } else {
             let even = Galerkin::new(&surface, flow);
             let onset = onset_sources(&even);
             let (_, even_wake) = lay_out(problem, flow)?;
-            let steady =
-                Body::factorise(&surface, even, &onset, &selector, problem.solver, progress)?;
+            let steady = Body::factorise(even, &onset, &selector, problem.solver, progress)?;
             let onsets = steady.steady_onsets(&even_wake, &selector, 0, progress)?;
             flow_wake = Some(even_wake);
             drop(steady);
             (
-                Body::factorise(
-                    &surface,
-                    galerkin,
-                    &sources,
-                    &selector,
-                    problem.solver,
-                    progress,
-                )?,
+                Body::factorise(galerkin, &sources, &selector, problem.solver, progress)?,
                 onsets,
             )
         };
@@ -156,7 +140,6 @@ impl<O> Body<O> {
 
 impl Body<Operator> {
     fn factorise(
-        surface: &CutSurface,
         galerkin: Galerkin,
         sources: &Mat<f64>,
         selector: &Mat<f64>,
@@ -165,16 +148,17 @@ impl Body<Operator> {
     ) -> Result<Self, BemError> {
         let (operator, mut potentials, free_terms) = match solver {
             Solver::Hierarchical { tolerance } => {
-                let (sources, free_terms) =
-                    source_potentials(&galerkin, sources.as_ref(), progress)?;
-                let operator = HierarchicalOperator::new(
+                let assembled = HierarchicalOperator::assemble(
                     &galerkin,
-                    surface,
-                    &free_terms,
+                    sources.as_ref(),
                     tolerance,
                     progress,
                 )?;
-                (Operator::Hierarchical(operator), sources, free_terms)
+                (
+                    Operator::Hierarchical(assembled.operator),
+                    assembled.right_hand_sides,
+                    assembled.free_terms,
+                )
             }
             Solver::Refined | Solver::Double => {
                 let assembly = galerkin.assemble(sources.as_ref(), progress)?;

@@ -35,7 +35,7 @@ const CHARGES: usize = 640;
 /// Rest of a charge's potential that ends the elimination, of the largest potential.
 /// Influences of panels are then interpolated to some 1e-8 of their largest value, with
 /// signs that do not add up.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-10;
 
 /// A cluster is worth it when the chosen points are at most this part of all.
 const WORTH: f64 = 0.6;
@@ -200,7 +200,7 @@ mod tests {
             skeleton.chosen.len(),
             points.len()
         );
-        assert!(skeleton.chosen.len() < points.len() / 3 && worst < 1e-7);
+        assert!(skeleton.chosen.len() < points.len() / 2 && worst < 1e-8);
     }
 
     #[test]

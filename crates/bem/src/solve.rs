@@ -157,22 +157,25 @@ pub struct Plan {
 
 /// Seconds of one core at 2.1 GHz with AVX-512; `benches/RESULTS.md` has the measurements.
 /// With sources, tested and multiplied by them.
-const SECONDS_PER_BODY_PAIR: f64 = 18e-9;
-const SECONDS_PER_WAKE_PAIR: f64 = 9e-9;
-const SECONDS_PER_FAR_NODE: f64 = 13e-9;
+const SECONDS_PER_BODY_PAIR: f64 = 11e-9;
+/// Most pairs of the wake are far and taken at few points.
+const SECONDS_PER_WAKE_PAIR: f64 = 1.8e-9;
+const SECONDS_PER_FAR_NODE: f64 = 1.4e-9;
+/// Chosen points of clusters and regions.
+const SECONDS_PER_TRIANGLE: f64 = 1e-4;
 const SINGLE_FLOPS_PER_SECOND: f64 = 9e10;
 const DOUBLE_FLOPS_PER_SECOND: f64 = 4e10;
 
-/// Of a hierarchical matrix, by n log₂ n: its blocks, and making both operators; one step
-/// of all iterations together for one right-hand side.
+/// Of a hierarchical matrix, by n log₂ n: its blocks, making them and the right-hand sides,
+/// all iterations for one right-hand side.
 const HIERARCHICAL_BYTES: f64 = 1200.0;
-const SECONDS_OF_COMPRESSION: f64 = 3.5e-4;
+const SECONDS_OF_COMPRESSION: f64 = 2.0e-4;
 const SECONDS_OF_ITERATION: f64 = 6e-7;
 /// A thread's Krylov spaces, by n.
 const KRYLOV_BYTES: f64 = 32.0 * 32.0 * 8.0;
 
-/// Rows of a cluster of test triangles, about.
-const ROWS_OF_A_CLUSTER: f64 = 96.0;
+/// Rows of a cluster of test triangles and its chosen points, about.
+const ROWS_OF_A_CLUSTER: f64 = 340.0;
 
 /// Lays out the wake and counts.
 ///
@@ -236,6 +239,7 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
     Ok(Plan {
         memory_bytes: (at_most + 24.0 * n * solved) as u64,
         core_seconds: body
+            + sizes.triangles as f64 * SECONDS_PER_TRIANGLE
             + wake_pairs * SECONDS_PER_WAKE_PAIR
             + far * SECONDS_PER_FAR_NODE
             + algebra,

@@ -37,16 +37,18 @@ const STEADY: Goals = Goals {
     kutta: 0.01,
 };
 
-/// Cells of the fine steady wings, of which there are 28.
-const STEADY_WING: Cells = Cells {
-    chord: 48,
-    half_span: 20,
-};
-
-/// Cells of the fine oscillating wings.
+/// Cells of the fine wings: the first as long as the nose radius of a 2 % section.
 const WING: Cells = Cells {
     chord: 48,
     half_span: 20,
+    nose: 0.5,
+};
+
+/// Cells of the fine wings with thickness.
+const THICK_WING: Cells = Cells {
+    chord: 56,
+    half_span: 28,
+    nose: 0.3,
 };
 
 impl Part {
@@ -135,8 +137,8 @@ impl Part {
                 }
             }
             Self::Wings => {
-                rows.extend(wings::plates(STEADY_WING, |_| true, STEADY)?);
-                rows.extend(wings::thick(STEADY_WING, STEADY)?);
+                rows.extend(wings::plates(WING, |_| true, STEADY)?);
+                rows.extend(wings::thick(THICK_WING, STEADY)?);
             }
             Self::Section => {
                 let wing = LongWing {
@@ -172,6 +174,7 @@ impl Part {
                     let cells = Cells {
                         chord: 16,
                         half_span: 12,
+                        nose: 0.0,
                     };
                     let plate = Plate::new(planform, Kind::Structured, cells)?;
                     rows.extend(laplace::analytic(name, plate.mesh(), plate.thick())?);

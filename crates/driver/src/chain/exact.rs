@@ -57,11 +57,25 @@ impl Aerodynamics for ExactForces<'_> {
         }
     }
 
+    /// The slope is the surrogate's, but on the branch cut, where that has poles, a central
+    /// difference along it.
     fn q_and_slope(&self, p: c64) -> (Mat<c64>, Mat<c64>) {
+        if p.im == 0.0 && p.re < 0.0 {
+            let step = DIFFERENCE * p.re.abs();
+            let (ahead, behind) = (self.q(p + step), self.q(p - step));
+            return (
+                self.q(p),
+                (ahead - behind) * faer::Scale(c64::from(0.5 / step)),
+            );
+        }
         let (_, slope) = self.slopes.q_and_slope(p);
         (self.q(p), slope)
     }
 }
+
+/// Step of the difference on the cut relative to $|g|$: truncation and rounding both leave
+/// some 1e-9 of the slope.
+const DIFFERENCE: f64 = 1e-4;
 
 /// Distance from the cut relative to $|g|$ at which its limit is taken; the
 /// forces change by as little.

@@ -72,6 +72,10 @@ pub struct NacaWing {
     pub n_half_span: usize,
     /// 0: equal chordwise steps; 1: full cosine spacing.
     pub chord_clustering: f64,
+    /// c ≥ 0: ξ of those steps is raised to the power 1 + c, so that the cells at the nose
+    /// get shorter and those at the trailing edge longer. Lift by pressure needs a first
+    /// cell about as long as the nose's radius, 1.1 t² c.
+    pub nose_clustering: f64,
     /// 0: equal spanwise steps; 1: full cosine spacing towards the tip.
     pub span_clustering: f64,
     /// How the wing ends. [`unstructured`](Self::unstructured) makes flat tips only.
@@ -92,6 +96,7 @@ impl Default for NacaWing {
             n_chord: 12,
             n_half_span: 12,
             chord_clustering: 0.75,
+            nose_clustering: 0.0,
             span_clustering: 0.5,
             tip: Tip::Flat,
             extent: Extent::Full,
@@ -136,7 +141,7 @@ impl NacaWing {
     }
 
     pub(super) fn check(&self) -> Result<(), ShapeError> {
-        let rules: [(&'static str, f64, bool, &'static str); 8] = [
+        let rules: [(&'static str, f64, bool, &'static str); 9] = [
             (
                 "thickness",
                 self.thickness,
@@ -165,6 +170,12 @@ impl NacaWing {
                 "at least 1 cell is needed",
             ),
             (
+                "nose_clustering",
+                self.nose_clustering,
+                (0.0..=4.0).contains(&self.nose_clustering),
+                "it must lie between 0 and 4",
+            ),
+            (
                 "clustering",
                 self.chord_clustering.max(self.span_clustering),
                 [self.chord_clustering, self.span_clustering]
@@ -185,7 +196,7 @@ impl NacaWing {
     pub(super) fn chord_fraction(&self, u: f64) -> f64 {
         let t = u / self.n_chord as f64;
         let cosine = 0.5 * (1.0 - (std::f64::consts::PI * t).cos());
-        t + self.chord_clustering * (cosine - t)
+        (t + self.chord_clustering * (cosine - t)).powf(1.0 + self.nose_clustering)
     }
 
     /// y after `v` of `n_half_span` cells; odd in v.
