@@ -45,7 +45,6 @@ fn a_section_obeys_theodorsen_anywhere_in_the_laplace_plane() {
         aspect_ratio: 60.0,
         n_chord: 24,
         n_half_span: 6,
-        nose: 0.0,
     };
     assert!(report(&theodorsen(&wing, 0.03).expect("solved")));
 }

@@ -12,6 +12,7 @@ use crate::blocked_lu::BlockedLu;
 use crate::error::BemError;
 use crate::hierarchical::HierarchicalOperator;
 use crate::progress::Progress;
+use crate::skeleton;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
@@ -64,6 +65,14 @@ impl Solver {
     pub const LARGEST_DENSE: usize = 20_000;
     /// Keeps Q to some 1e-5 of its largest entry.
     pub const TOLERANCE: f64 = 1e-6;
+
+    /// Tolerance of far influences: that of blocks, with a digit to spare.
+    pub(crate) fn far_tolerance(self) -> f64 {
+        match self {
+            Self::Refined | Self::Double => skeleton::TOLERANCE,
+            Self::Hierarchical { tolerance } => (0.1 * tolerance).max(skeleton::TOLERANCE),
+        }
+    }
 
     /// Dense up to [`Self::LARGEST_DENSE`] vertices, hierarchical beyond.
     pub fn automatic(vertices: usize) -> Self {

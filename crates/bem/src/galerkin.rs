@@ -22,6 +22,7 @@ use crate::panel_block::{BLOCK, PanelBlock};
 use crate::progress::Progress;
 use crate::receiver::Receiver;
 use crate::regions::{Regions, TOGETHER};
+use crate::skeleton::TOLERANCE;
 use crate::source_columns::SourceColumns;
 use crate::tiles::vertex_blocks;
 use crate::tiles::{CLUSTER, PointValues, TestCluster, Tile, TileScratch, free_terms};
@@ -68,6 +69,8 @@ pub(crate) struct Galerkin {
     constrained: Vec<bool>,
     /// Test triangles, close ones together.
     pub(crate) clusters: Vec<TestCluster>,
+    /// Of far influences.
+    pub(crate) tolerance: f64,
     /// Clusters together, for what is far from them.
     pub(crate) regions: Regions,
     /// The surface in blocks of close triangles.
@@ -139,7 +142,13 @@ struct ClusterRows {
 }
 
 impl Galerkin {
+    /// With far influences to the rounding of what is done with them.
     pub(crate) fn new(surface: &CutSurface, image: Image) -> Self {
+        Self::with_tolerance(surface, image, TOLERANCE)
+    }
+
+    /// `tolerance`: that of [`crate::skeleton`].
+    pub(crate) fn with_tolerance(surface: &CutSurface, image: Image, tolerance: f64) -> Self {
         let n_vertices = surface.vertices.len();
         let mut weights = vec![0.0; n_vertices];
         let mut normals = Vec::new();
@@ -193,6 +202,7 @@ impl Galerkin {
                 .map(|v| image == Image::Odd && image::on_plane(v))
                 .collect(),
             clusters: Vec::new(),
+            tolerance,
             regions: Regions::default(),
             blocks,
         };
@@ -207,7 +217,7 @@ impl Galerkin {
                 }
             })
             .collect();
-        galerkin.regions = Regions::new(&galerkin.clusters, image);
+        galerkin.regions = Regions::new(&galerkin.clusters, image, tolerance);
         galerkin
     }
 

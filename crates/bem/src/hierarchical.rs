@@ -25,10 +25,14 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
-/// Right-hand sides multiplied together by one thread, and from how many unknowns on only
-/// half as many, their Krylov spaces being large.
-const TOGETHER: usize = 64;
+/// Right-hand sides multiplied together by one thread, at most: the more, the less often the
+/// operator comes from memory. From so many unknowns on half as many, their Krylov spaces
+/// being large.
+const TOGETHER: usize = 48;
 const MANY: usize = 40_000;
+
+/// Chunks of right-hand sides are a multiple of this and equally large.
+const CHUNKS: usize = 2;
 
 /// Residual of a solution, in tolerances.
 const RESIDUAL: f64 = 0.2;
@@ -127,14 +131,22 @@ fn product(a: MatRef<'_, f32>, b: MatRef<'_, f32>) -> Mat<f32> {
 
 /// Some rows of a matrix.
 fn gathered(x: &Mat<f32>, rows: &[u32]) -> Mat<f32> {
-    Mat::from_fn(rows.len(), x.ncols(), |i, j| x[(rows[i] as usize, j)])
+    let mut out = Mat::zeros(rows.len(), x.ncols());
+    for j in 0..x.ncols() {
+        let from = x.col_as_slice(j);
+        for (out, &row) in out.col_as_slice_mut(j).iter_mut().zip(rows) {
+            *out = from[row as usize];
+        }
+    }
+    out
 }
 
 /// Adds rows to their places.
 fn scatter(values: &Mat<f32>, rows: &[u32], out: &mut Mat<f32>) {
     for j in 0..values.ncols() {
-        for (i, &row) in rows.iter().enumerate() {
-            out[(row as usize, j)] += values[(i, j)];
+        let to = out.col_as_slice_mut(j);
+        for (value, &row) in values.col_as_slice(j).iter().zip(rows) {
+            to[row as usize] += value;
         }
     }
 }
@@ -312,6 +324,8 @@ impl HierarchicalOperator {
         } else {
             TOGETHER / 2
         };
+        let chunks = b.ncols().div_ceil(together).next_multiple_of(CHUNKS);
+        let together = b.ncols().div_ceil(chunks).max(1);
         progress.stage(stage, b.ncols().div_ceil(together) as u64);
         b.par_col_chunks_mut(together)
             .try_for_each(|mut part: MatMut<'_, f64>| {

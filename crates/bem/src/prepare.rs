@@ -54,7 +54,8 @@ impl Prepared<Operator> {
         let (flow, motion) = (Image::of_flow(symmetry), Image::of_motion(symmetry));
         let (surface, wake) = lay_out(problem, motion)?;
         let selector = selector(&surface);
-        let galerkin = Galerkin::new(&surface, motion);
+        let tolerance = problem.solver.far_tolerance();
+        let galerkin = Galerkin::with_tolerance(&surface, motion, tolerance);
         let fields = ModeFields::new(
             &galerkin,
             &surface.source,
@@ -70,7 +71,7 @@ impl Prepared<Operator> {
             let onsets = body.steady_onsets(&wake, &selector, sources.ncols(), progress)?;
             (body, onsets)
         } else {
-            let even = Galerkin::new(&surface, flow);
+            let even = Galerkin::with_tolerance(&surface, flow, tolerance);
             let onset = onset_sources(&even);
             let (_, even_wake) = lay_out(problem, flow)?;
             let steady = Body::factorise(even, &onset, &selector, problem.solver, progress)?;

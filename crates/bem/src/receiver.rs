@@ -45,7 +45,7 @@ impl Receiver {
     pub(crate) fn new(galerkin: &Galerkin, triangles: &[u32], rows: &[u32]) -> Option<Self> {
         let tests = triangles.iter().map(|&t| &galerkin.tests[t as usize]);
         let points: Vec<Vec3> = tests.clone().flat_map(|test| test.points).collect();
-        let skeleton = Skeleton::new(&points)?;
+        let skeleton = Skeleton::new(&points, galerkin.tolerance)?;
         let mut tested = Mat::zeros(rows.len(), width(&skeleton));
         for (place, &t) in triangles.iter().enumerate() {
             for (i, v) in galerkin.triangles[t as usize].iter().enumerate() {
@@ -73,9 +73,10 @@ impl Receiver {
         parts: &[(&Self, &[u32])],
         image: Image,
         rows: &[u32],
+        tolerance: f64,
     ) -> Option<Self> {
         let points: Vec<Vec3> = parts.iter().flat_map(|(p, _)| &p.chosen).copied().collect();
-        let skeleton = Skeleton::new(&points)?;
+        let skeleton = Skeleton::new(&points, tolerance)?;
         let mut tested = Mat::zeros(rows.len(), width(&skeleton));
         let mut first = 0;
         for (part, part_rows) in parts {
@@ -218,7 +219,7 @@ mod tests {
             for cluster in &mut plain.clusters {
                 cluster.receiver = None;
             }
-            plain.regions = Regions::new(&plain.clusters, image);
+            plain.regions = Regions::new(&plain.clusters, image, plain.tolerance);
             let far: Vec<Part> = galerkin
                 .blocks
                 .iter()

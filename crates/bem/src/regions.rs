@@ -37,7 +37,7 @@ pub(crate) struct Regions {
 }
 
 impl Regions {
-    pub(crate) fn new(clusters: &[TestCluster], image: Image) -> Self {
+    pub(crate) fn new(clusters: &[TestCluster], image: Image, tolerance: f64) -> Self {
         let mut regions = Self {
             all: Vec::new(),
             roots: (0..clusters.len()).map(Part::Cluster).collect(),
@@ -47,7 +47,7 @@ impl Regions {
             let parts = std::mem::take(&mut regions.roots);
             let gathered: Vec<Option<Region>> = parts
                 .par_chunks(TOGETHER)
-                .map(|group| regions.gather(clusters, group, image))
+                .map(|group| regions.gather(clusters, group, image, tolerance))
                 .collect();
             for (group, region) in parts.chunks(TOGETHER).zip(gathered) {
                 match region {
@@ -65,7 +65,13 @@ impl Regions {
     }
 
     /// A region of some parts, if each has a receiver and they are better off together.
-    fn gather(&self, clusters: &[TestCluster], parts: &[Part], image: Image) -> Option<Region> {
+    fn gather(
+        &self,
+        clusters: &[TestCluster],
+        parts: &[Part],
+        image: Image,
+        tolerance: f64,
+    ) -> Option<Region> {
         if parts.len() < 2 {
             return None;
         }
@@ -87,7 +93,7 @@ impl Regions {
         rows.sort_unstable();
         rows.dedup();
         Some(Region {
-            receiver: Receiver::of_all(&received, image, &rows)?,
+            receiver: Receiver::of_all(&received, image, &rows, tolerance)?,
             rows,
             parts: parts.to_vec(),
         })

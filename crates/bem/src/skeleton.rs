@@ -35,7 +35,7 @@ const CHARGES: usize = 640;
 /// Rest of a charge's potential that ends the elimination, of the largest potential.
 /// Influences of panels are then interpolated to some 1e-8 of their largest value, with
 /// signs that do not add up.
-const TOLERANCE: f64 = 1e-10;
+pub(crate) const TOLERANCE: f64 = 1e-10;
 
 /// A cluster is worth it when the chosen points are at most this part of all.
 const WORTH: f64 = 0.6;
@@ -53,11 +53,11 @@ pub(crate) struct Skeleton {
 }
 
 impl Skeleton {
-    /// None where the points are too few to gain anything.
-    pub(crate) fn new(points: &[Vec3]) -> Option<Self> {
+    /// Rests up to `tolerance`; none where the points are too few to gain anything.
+    pub(crate) fn new(points: &[Vec3], tolerance: f64) -> Option<Self> {
         let (centre, radius) = enclosing(points);
         let most = (WORTH * points.len() as f64) as usize;
-        let (chosen, weights) = interpolation(points, centre, REACH * radius, most)?;
+        let (chosen, weights) = interpolation(points, centre, REACH * radius, most, tolerance)?;
         Some(Self {
             centre,
             radius,
@@ -79,6 +79,7 @@ fn interpolation(
     centre: Vec3,
     radius: f64,
     most: usize,
+    tolerance: f64,
 ) -> Option<(Vec<u32>, Mat<f64>)> {
     let charges: Vec<Vec3> = charges().map(|c| centre + radius * c).collect();
     let mut chosen: Vec<u32> = Vec::new();
@@ -114,7 +115,7 @@ fn interpolation(
             let (pivot, size) = column.iter().enumerate().fold((0, 0.0), |best, (i, x)| {
                 if x.abs() > best.1 { (i, x.abs()) } else { best }
             });
-            if size <= TOLERANCE * largest {
+            if size <= tolerance * largest {
                 continue;
             }
             let k = chosen.len();
@@ -173,7 +174,7 @@ mod tests {
                 Vec3::new(u, v + 0.2 * u, 0.04 * side * u * (1.0 - u) + 0.1 * v * v)
             })
             .collect();
-        let skeleton = Skeleton::new(&points).expect("enough points");
+        let skeleton = Skeleton::new(&points, TOLERANCE).expect("enough points");
         let mut worst = 0.0_f64;
         for i in 0..200 {
             let t = f64::from(i);
@@ -208,6 +209,6 @@ mod tests {
         let points: Vec<Vec3> = (0..24)
             .map(|i| Vec3::new(f64::from(i % 6), f64::from(i / 6), 0.0))
             .collect();
-        assert!(Skeleton::new(&points).is_none());
+        assert!(Skeleton::new(&points, TOLERANCE).is_none());
     }
 }
