@@ -168,8 +168,8 @@ const DOUBLE_FLOPS_PER_SECOND: f64 = 4e10;
 
 /// Of a hierarchical matrix, by n log₂ n: its blocks, making them and the right-hand sides,
 /// all iterations for one right-hand side.
-const HIERARCHICAL_BYTES: f64 = 1200.0;
-const SECONDS_OF_COMPRESSION: f64 = 2.0e-4;
+const HIERARCHICAL_BYTES: f64 = 5000.0;
+const SECONDS_OF_COMPRESSION: f64 = 5.5e-5;
 const SECONDS_OF_ITERATION: f64 = 6e-7;
 /// A thread's Krylov spaces, by n.
 const KRYLOV_BYTES: f64 = 32.0 * 32.0 * 8.0;
