@@ -58,6 +58,17 @@ pub(crate) enum ScanEagleError {
     },
 }
 
+impl Mesh {
+    /// The surface of the case in a size of its table.
+    pub(crate) fn of_case(size: &str, out: PathBuf) -> Self {
+        Self {
+            size: size.to_owned(),
+            params: TABLE.into(),
+            out: Some(out),
+        }
+    }
+}
+
 impl ScanEagle {
     /// Makes it; a sentence about it.
     pub(crate) fn run(&self) -> Result<String, ScanEagleError> {
