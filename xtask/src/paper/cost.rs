@@ -142,6 +142,6 @@ fn forces_again(case: &Path, mesh: &Path) -> Result<(Duration, Option<u64>), Pap
         path: std::env::temp_dir(),
         source,
     })?;
-    let study = open(case, mesh, fresh.path())?;
+    let study = open(case, mesh, fresh.path(), &[])?;
     Ok(study.effort().unwrap_or_default())
 }

@@ -12,6 +12,7 @@ mod published;
 mod roots;
 mod stills;
 mod tables;
+mod variants;
 mod words;
 mod work;
 
@@ -103,7 +104,7 @@ impl Paper {
         let cache = self.cache.clone().unwrap_or_else(|| self.out.join("cache"));
         let mesh = work::mesh_file(&self.mesh, &self.out)?;
         eprintln!("forces on {}", mesh.display());
-        let study = work::open(&self.case, &mesh, &cache)?;
+        let study = work::open(&self.case, &mesh, &cache, &[])?;
         let times = self.out.join("cost.json");
         let cost = match Cost::kept(&times, &study) {
             Some(cost) if !self.again => cost,
@@ -112,7 +113,8 @@ impl Paper {
         output::write(&times, serde_json::to_string_pretty(&cost)? + "\n")?;
         let work = Work::new(study)?;
         eprintln!("figures");
-        let chapter = chapter(&work, &published, &cost)?;
+        let mut chapter = chapter(&work, &published, &cost)?;
+        chapter.variants = variants::table(&self.case, &self.out, &cache, &published)?;
         chapter.write(&self.out)?;
         if self.docs {
             chapter.document(Path::new(DOCS))?;

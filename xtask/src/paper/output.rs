@@ -21,6 +21,7 @@ pub(super) struct Chapter {
     pub(super) claims: Claims,
     pub(super) crossings: Table,
     pub(super) dutch: Table,
+    pub(super) variants: Table,
     pub(super) longitudinal: Table,
     pub(super) cost: Table,
 }
@@ -44,6 +45,7 @@ impl Chapter {
             claims: Claims::default(),
             crossings: Table::default(),
             dutch: Table::default(),
+            variants: Table::default(),
             longitudinal: Table::default(),
             cost: Table::default(),
         }
@@ -123,6 +125,7 @@ impl Chapter {
             ("table_2.csv", &self.longitudinal),
             ("cost.csv", &self.cost),
             ("crossings.csv", &self.crossings),
+            ("dutch_roll_variants.csv", &self.variants),
             ("claims.csv", &self.claims()),
             ("comparison.csv", &self.comparison_with_causes()),
         ] {
@@ -150,6 +153,7 @@ impl Chapter {
         part("Claims", &self.claims().html());
         part("Crossings into growth", &self.crossings.html());
         part("Table 1", &self.dutch.html());
+        part("What moves the Dutch roll", &self.variants.html());
         part("Table 2", &self.longitudinal.html());
         part("Cost, section 5.4", &self.cost.html());
         for (name, _) in &self.figures {
@@ -180,6 +184,7 @@ impl Chapter {
             ("claims", &self.claims()),
             ("crossings", &self.crossings),
             ("table 1", &self.dutch),
+            ("variants", &self.variants),
             ("table 2", &self.longitudinal),
             ("cost", &self.cost),
         ] {

@@ -30,7 +30,7 @@ const MOTIONS: [&str; 8] = [
 /// Ends of the axis of k in the paper's two diagrams.
 const K: [f64; 2] = [0.05, 0.025];
 /// Damping outside of this is left out.
-const G: [f64; 2] = [-0.1, 0.05];
+const G: [f64; 2] = [-0.03, 0.03];
 
 /// Figure 9: rigid motions by name. p2 on axis data as lines, on Laplace data as rings,
 /// p-k as crosses.

@@ -6,6 +6,7 @@ use fladder::study::Study;
 use fladder_stability::{FlightMode, Method, MethodResult, Methods, SweepResult};
 
 use super::PaperError;
+use crate::scaneagle::{Mesh, ScanEagle, TABLE};
 
 /// Speeds of the paper's figures, m/s.
 const SPEEDS: &str = "stability.speed={ from = 20.0, to = 75.0, count = 56 }";
@@ -31,17 +32,23 @@ pub(super) struct Work {
     pub(super) without_speed: SweepResult,
 }
 
-/// The case on a mesh, with the paper's conditions.
-pub(super) fn open(case: &Path, mesh: &Path, cache: &Path) -> Result<Study, PaperError> {
+/// The case on a mesh, with the paper's conditions and further overrides.
+pub(super) fn open(
+    case: &Path,
+    mesh: &Path,
+    cache: &Path,
+    more: &[String],
+) -> Result<Study, PaperError> {
     let mesh = std::path::absolute(mesh).map_err(|source| PaperError::File {
         path: mesh.to_owned(),
         source,
     })?;
-    let set = [
+    let mut set = vec![
         format!("mesh.file={:?}", mesh.display().to_string()),
         SPEEDS.to_owned(),
         "stability.fit=centred".to_owned(),
     ];
+    set.extend_from_slice(more);
     Ok(Study::open(case, &set, Some(cache))?)
 }
 
@@ -150,7 +157,14 @@ pub(super) fn mesh_file(mesh: &str, folder: &Path) -> Result<PathBuf, PaperError
         return Ok(kept);
     }
     let made = folder.join(format!("scaneagle_{mesh}.msh"));
-    crate::scaneagle::ScanEagle::Mesh(crate::scaneagle::Mesh::of_case(mesh, made.clone()))
-        .run()?;
+    if made.is_file() {
+        return Ok(made);
+    }
+    let wanted = Mesh {
+        size: mesh.to_owned(),
+        params: TABLE.into(),
+        out: Some(made.clone()),
+    };
+    ScanEagle::Mesh(wanted).run()?;
     Ok(made)
 }
