@@ -1,6 +1,6 @@
 //! A number of the paper beside ours, and what is to be said of the two.
 
-use super::published::Value;
+use super::published::Quoted;
 use super::words::{amplitude, number};
 
 /// What is said of a pair of numbers.
@@ -42,7 +42,7 @@ pub(super) struct Row {
 
 impl Row {
     /// `here` in the unit of the paper's value; none where there is no such thing.
-    pub(super) fn new(value: &Value, here: Option<f64>) -> Self {
+    pub(super) fn new(value: &Quoted, here: Option<f64>) -> Self {
         let here = here.filter(|here| here.is_finite());
         // Growth and decay are compared as rates.
         let ratio = here.map(|here| {

@@ -134,7 +134,9 @@ fn chapter(work: &Work, published: &Published, cost: &Cost) -> Result<Chapter, P
         ("figure_02_mesh", stills::mesh(work)),
         ("figure_03_structure", stills::structure(work)),
     ] {
-        picture.into_iter().for_each(|p| chapter.figure(name, p));
+        if let Some(picture) = picture {
+            chapter.figure(name, picture);
+        }
     }
     chapter.rows = modes(work, published, &mut chapter)?;
     let [locus, diagram] = roots::figure_8(work, &chapter.conditions);
@@ -179,7 +181,9 @@ fn modes(
         let paper = format!("{}, {} Hz", value.quantity, value.value);
         let picture = mode.and_then(|mode| stills::mode(work, number, mode, &paper));
         let name = format!("figure_{number:02}_mode");
-        picture.into_iter().for_each(|p| chapter.figure(&name, p));
+        if let Some(picture) = picture {
+            chapter.figure(&name, picture);
+        }
     }
     Ok(rows)
 }

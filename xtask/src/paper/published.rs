@@ -7,7 +7,7 @@ use super::PaperError;
 /// A number of the paper.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Value {
+pub(super) struct Quoted {
     /// By which the command asks for it.
     pub(super) id: String,
     pub(super) quantity: String,
@@ -33,7 +33,7 @@ pub(super) struct Value {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Published {
-    pub(super) value: Vec<Value>,
+    pub(super) value: Vec<Quoted>,
 }
 
 impl Published {
@@ -42,7 +42,7 @@ impl Published {
         Ok(toml::from_str(include_str!("paper.toml"))?)
     }
 
-    pub(super) fn get(&self, id: &'static str) -> Result<&Value, PaperError> {
+    pub(super) fn get(&self, id: &'static str) -> Result<&Quoted, PaperError> {
         let found = self.value.iter().find(|value| value.id == id);
         found.ok_or(PaperError::Unknown(id))
     }

@@ -1,5 +1,5 @@
 use super::compare::{Row, Verdict};
-use super::published::{Published, Value};
+use super::published::{Published, Quoted};
 use super::words::{Table, amplitude, number};
 
 #[test]
@@ -23,8 +23,8 @@ fn every_number_of_the_paper_has_a_source_and_a_tolerance_or_is_a_cost() {
     }
 }
 
-fn value(why: Option<&str>) -> Value {
-    Value {
+fn value(why: Option<&str>) -> Quoted {
+    Quoted {
         id: "x".to_owned(),
         quantity: "x".to_owned(),
         value: 2.0,
@@ -49,7 +49,7 @@ fn a_difference_without_a_cause_is_open() {
 
 #[test]
 fn growth_against_decay_is_a_negative_ratio() {
-    let growth = Value {
+    let growth = Quoted {
         is_time_of_amplitude: true,
         ..value(None)
     };
@@ -62,7 +62,7 @@ fn growth_against_decay_is_a_negative_ratio() {
 
 #[test]
 fn a_cost_is_faster_or_slower() {
-    let cost = Value {
+    let cost = Quoted {
         is_cost: true,
         ..value(None)
     };

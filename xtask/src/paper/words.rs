@@ -1,5 +1,7 @@
 //! Numbers and tables for people.
 
+use std::fmt::Write as _;
+
 /// Three significant digits.
 pub(super) fn number(value: f64) -> String {
     let size = value.abs();
@@ -69,10 +71,11 @@ impl Table {
 
     pub(super) fn html(&self) -> String {
         let cells = |row: &[String], tag: &str| -> String {
-            let cells: String = row
-                .iter()
-                .map(|cell| format!("<{tag}>{}</{tag}>", escape(cell)))
-                .collect();
+            let mut cells = String::new();
+            for cell in row {
+                // Writing to a string cannot fail.
+                let _ = write!(cells, "<{tag}>{}</{tag}>", escape(cell));
+            }
             format!("<tr>{cells}</tr>\n")
         };
         let rows: String = self.rows.iter().map(|row| cells(row, "td")).collect();

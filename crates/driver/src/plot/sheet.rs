@@ -264,7 +264,7 @@ fn wrapped(text: &str, letters: usize) -> Vec<String> {
 mod tests {
     use super::*;
 
-    fn graph(points: Vec<[f64; 2]>) -> Graph {
+    fn graph(points: &[[f64; 2]]) -> Graph {
         let marks = [
             Mark::Line,
             Mark::Points,
@@ -280,7 +280,7 @@ mod tests {
                 .map(|mark| Series {
                     mark,
                     group: Some(1),
-                    points: points.clone(),
+                    points: points.to_vec(),
                 })
                 .to_vec(),
         }
@@ -289,8 +289,8 @@ mod tests {
     #[test]
     fn every_mark_is_drawn_and_what_is_not_finite_is_left_out() {
         let graphs = [
-            graph(vec![[0.0, 1.0], [f64::NAN, 2.0], [1.0, 3.0]]),
-            graph(Vec::new()),
+            graph(&[[0.0, 1.0], [f64::NAN, 2.0], [1.0, 3.0]]),
+            graph(&[]),
         ];
         let names: Vec<String> = (0..30).map(|n| format!("group {n}")).collect();
         let text = sheet(&Sheet {
