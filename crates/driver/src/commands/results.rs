@@ -41,7 +41,7 @@ pub(crate) fn results(
     let speeds = Conditions::of(&file)?.speeds();
     let out = session.results_folder(&file);
     let mut own = None;
-    let mut facts = vec![("case".to_owned(), path.display().to_string())];
+    let mut facts = report::inputs(&file, &session.common.set);
     let (structure, forces) = if forces::are_given(&file) {
         let structure = StructureData::read(&file)?;
         report::structure(console, &structure, None);
