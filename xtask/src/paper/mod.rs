@@ -5,6 +5,7 @@
 
 mod compare;
 mod cost;
+mod crossings;
 mod fit;
 mod incidence;
 mod output;
@@ -20,13 +21,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use fladder::failure::Failure;
-use fladder_stability::{Crossing, Kind};
 
 use compare::Row;
 use cost::Cost;
 use output::Chapter;
 use published::Published;
-use work::{FAST, Work, at, dutch_roll, is_longitudinal, nearest};
+use work::{FAST, Work, at, dutch_roll, nearest};
 
 /// The case and the chapter of the manual.
 const CASE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../cases/scaneagle");
@@ -155,7 +155,7 @@ fn chapter(work: &Work, published: &Published, cost: &Cost) -> Result<Chapter, P
     }
     let value = published.get("cost_sweep")?;
     chapter.rows.push(Row::new(value, Some(cost.sweep)));
-    chapter.crossings = crossings(work);
+    chapter.crossings = crossings::table(work);
     chapter.dutch = tables::dutch(work, published)?;
     chapter.longitudinal = tables::longitudinal(work, published)?;
     chapter.cost = cost.table();
@@ -195,13 +195,15 @@ fn motions(work: &Work, published: &Published) -> Result<Vec<Row>, PaperError> {
         rows.push(Row::new(published.get(id)?, here));
         Ok(())
     };
-    let flutter = flutter_of_the_kind(work, published)?;
+    let flutter = crossings::of_the_kind(work, published)?;
     add("flutter_speed", flutter.map(|crossing| crossing.speed))?;
     add(
         "flutter_frequency",
         flutter.map(|crossing| crossing.frequency_hz),
     )?;
     add("flutter_k", flutter.map(|crossing| crossing.k))?;
+    let first = crossings::elastic(work).next();
+    add("flutter_first", first.map(|crossing| crossing.speed))?;
     let methods = &work.main.methods;
     let (p2, pk) = (methods.p2.as_ref(), methods.pk.as_ref());
     let period = published.get("dutch_period_p2")?.value;
@@ -213,15 +215,14 @@ fn motions(work: &Work, published: &Published) -> Result<Vec<Row>, PaperError> {
     let time = |sigma: f64| std::f64::consts::LN_2 / sigma;
     add("dutch_growth", by_p2.map(|motion| time(motion.sigma)))?;
     let period = published.get("longitudinal_period")?.value;
-    let bare = work.without_speed.methods.p2.as_ref();
-    let found = bare.and_then(|bare| {
-        let those = at(&bare.flight_modes, work::LONGITUDINAL);
-        nearest(those.filter(|motion| is_longitudinal(motion)), period)
-    });
-    add(
-        "longitudinal_period",
-        found.and_then(|motion| motion.period),
-    )?;
+    for (id, swept) in [
+        ("longitudinal_period", &work.without_speed),
+        ("longitudinal_period_with", &work.with_speed),
+    ] {
+        let p2 = swept.methods.p2.as_ref();
+        let found = p2.and_then(|p2| work::longitudinal(&p2.flight_modes, period));
+        add(id, found.and_then(|motion| motion.period))?;
+    }
     let frequency = published.get("roll_bending")?.value;
     let found = p2.and_then(|p2| {
         let those = at(&p2.flight_modes, FAST);
@@ -234,65 +235,6 @@ fn motions(work: &Work, published: &Published) -> Result<Vec<Row>, PaperError> {
         found.and_then(|motion| motion.period.map(|period| 1.0 / period)),
     )?;
     Ok(rows)
-}
-
-/// The elastic crossing nearest to the paper's in speed, frequency and reduced frequency,
-/// all by ratio.
-fn flutter_of_the_kind<'a>(
-    work: &'a Work,
-    published: &Published,
-) -> Result<Option<&'a Crossing>, PaperError> {
-    let speed = published.get("flutter_speed")?.value;
-    let frequency = published.get("flutter_frequency")?.value;
-    let k = published.get("flutter_k")?.value;
-    let distance = |crossing: &Crossing| {
-        let speeds = (crossing.speed / speed).ln();
-        let frequencies = (crossing.frequency_hz / frequency).ln();
-        speeds.hypot(frequencies).hypot((crossing.k / k).ln())
-    };
-    let crossings = work
-        .refined()
-        .into_iter()
-        .flat_map(|refined| &refined.flutter);
-    Ok(crossings
-        .filter(|crossing| crossing.kind == Kind::Elastic)
-        .min_by(|a, b| distance(a).total_cmp(&distance(b))))
-}
-
-/// All crossings into growth, and how far p2 and p-k are from the refined ones.
-fn crossings(work: &Work) -> words::Table {
-    let mut table = words::Table::new(&["crossing", "speed", "frequency", "k", "p2", "p-k"]);
-    let methods = &work.main.methods;
-    let refined = work.refined().map_or(&[][..], |refined| &refined.flutter);
-    for crossing in refined {
-        let beside = |result: &Option<fladder_stability::MethodResult>| {
-            let others = result.iter().flat_map(|result| &result.flutter);
-            let near = others
-                .map(|other| (other.speed / crossing.speed - 1.0, other))
-                .filter(|(apart, other)| {
-                    let ratio = other.frequency_hz / crossing.frequency_hz;
-                    apart.abs() < 0.05 && (0.8..1.25).contains(&ratio)
-                })
-                .min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
-            near.map_or_else(
-                || "–".to_owned(),
-                |(apart, _)| format!("{:+.3} %", 100.0 * apart).replace('-', "−"),
-            )
-        };
-        let kind = match crossing.kind {
-            Kind::Rigid => "rigid motion",
-            Kind::Elastic => "flutter",
-        };
-        table.push([
-            kind.to_owned(),
-            format!("{:.1} m/s", crossing.speed),
-            format!("{} Hz", words::number(crossing.frequency_hz)),
-            format!("{:.3}", crossing.k),
-            beside(&methods.p2),
-            beside(&methods.pk),
-        ]);
-    }
-    table
 }
 
 #[cfg(test)]

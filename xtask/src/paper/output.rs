@@ -125,7 +125,7 @@ impl Chapter {
             ("table_2.csv", &self.longitudinal),
             ("cost.csv", &self.cost),
             ("crossings.csv", &self.crossings),
-            ("dutch_roll_variants.csv", &self.variants),
+            ("variants.csv", &self.variants),
             ("claims.csv", &self.claims()),
             ("comparison.csv", &self.comparison_with_causes()),
         ] {
@@ -153,7 +153,7 @@ impl Chapter {
         part("Claims", &self.claims().html());
         part("Crossings into growth", &self.crossings.html());
         part("Table 1", &self.dutch.html());
-        part("What moves the Dutch roll", &self.variants.html());
+        part("Changed aircraft", &self.variants.html());
         part("Table 2", &self.longitudinal.html());
         part("Cost, section 5.4", &self.cost.html());
         for (name, _) in &self.figures {

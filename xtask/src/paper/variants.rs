@@ -1,17 +1,17 @@
-//! What moves the Dutch roll: other mass distributions and other winglets, on the smallest
-//! mesh.
+//! What moves the Dutch roll and the longitudinal motion: other mass distributions and
+//! other winglets, on the smallest mesh.
 
 use std::path::{Path, PathBuf};
 
 use fladder::study::Study;
 use fladder_modal::RigidBody;
-use fladder_stability::Method;
+use fladder_stability::{FlightMode, Method};
 
 use super::PaperError;
 use super::output;
 use super::published::Published;
 use super::words::{Table, amplitude, number};
-use super::work::{LATERAL, dutch_roll, mesh_file, open};
+use super::work::{LATERAL, LONGITUDINAL, dutch_roll, longitudinal, mesh_file, open};
 use crate::scaneagle::{Mesh, ScanEagle, TABLE};
 
 /// Size of the mesh.
@@ -37,10 +37,19 @@ pub(super) fn table(
     cache: &Path,
     published: &Published,
 ) -> Result<Table, PaperError> {
-    let period = published.get("dutch_period_p2")?.value;
+    let periods = [
+        published.get("dutch_period_p2")?.value,
+        published.get("longitudinal_period")?.value,
+    ];
     let mesh = mesh_file(SIZE, folder)?;
     let base = open(case, &mesh, cache, &[])?;
-    let mut table = Table::new(&["aircraft", "period", "amplitude", "σ"]);
+    let mut table = Table::new(&[
+        "aircraft",
+        "Dutch roll at 30 m/s, period",
+        "amplitude",
+        "σ",
+        "longitudinal motion at 45 m/s without speed terms, period",
+    ]);
     let mut all = vec![Variant {
         name: format!("as it is, {} triangles", base.mesh().triangles.len()),
         mesh: mesh.clone(),
@@ -58,10 +67,10 @@ pub(super) fn table(
     for variant in all {
         eprintln!("Dutch roll, {}", variant.name);
         let cells = match study(case, cache, &variant) {
-            Ok(study) => cells(&study, period)?,
+            Ok(study) => cells(&study, periods)?,
             Err(error) => {
                 eprintln!("{error}");
-                ["not computed", "–", "–"].map(str::to_owned)
+                ["not computed", "–", "–", "–"].map(str::to_owned)
             }
         };
         table.push([variant.name].into_iter().chain(cells));
@@ -73,22 +82,30 @@ fn study(case: &Path, cache: &Path, variant: &Variant) -> Result<Study, PaperErr
     open(case, &variant.mesh, cache, &variant.set)
 }
 
-fn cells(study: &Study, period: f64) -> Result<[String; 3], PaperError> {
-    let speed = format!("stability.speed=[{LATERAL:?}]");
-    let result = study.sweep(&[speed], Method::P2)?.result;
-    let refined = result.methods.polished.as_ref();
-    let found = refined.and_then(|refined| dutch_roll(&refined.flight_modes, period));
+fn cells(study: &Study, periods: [f64; 2]) -> Result<[String; 4], PaperError> {
+    let set = [
+        format!("stability.speed=[{LATERAL:?}, {LONGITUDINAL:?}]"),
+        "flight.speed_derivative=false".to_owned(),
+    ];
+    let result = study.sweep(&set, Method::P2)?.result;
+    let motions = result
+        .methods
+        .polished
+        .map_or_else(Vec::new, |refined| refined.flight_modes);
     let none = || "–".to_owned();
-    Ok(found.map_or_else(
+    let period =
+        |motion: &FlightMode| format!("{} s", number(motion.period.unwrap_or(f64::NAN)));
+    let lateral = dutch_roll(&motions, periods[0]).map_or_else(
         || ["none".to_owned(), none(), none()],
         |motion| {
-            [
-                format!("{} s", number(motion.period.unwrap_or(f64::NAN))),
-                amplitude(motion.sigma),
-                format!("{} 1/s", number(motion.sigma)),
-            ]
+            let sigma = format!("{} 1/s", number(motion.sigma));
+            [period(motion), amplitude(motion.sigma), sigma]
         },
-    ))
+    );
+    let along =
+        longitudinal(&motions, periods[1]).map_or_else(|| "aperiodic".to_owned(), period);
+    let [first, second, third] = lateral;
+    Ok([first, second, third, along])
 }
 
 fn masses(body: &RigidBody, mesh: &Path) -> Vec<Variant> {

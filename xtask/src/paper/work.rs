@@ -117,6 +117,12 @@ pub(super) fn dutch_roll(motions: &[FlightMode], period: f64) -> Option<&FlightM
     )
 }
 
+/// The oscillation in the plane of symmetry at the speed of table 2 with the nearest period.
+pub(super) fn longitudinal(motions: &[FlightMode], period: f64) -> Option<&FlightMode> {
+    let those = at(motions, LONGITUDINAL);
+    nearest(those.filter(|motion| is_longitudinal(motion)), period)
+}
+
 /// The motion whose period is nearest, by ratio.
 pub(super) fn nearest<'a>(
     motions: impl Iterator<Item = &'a FlightMode>,
