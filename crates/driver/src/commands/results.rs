@@ -169,7 +169,7 @@ fn tables(
         if let Some(text) = report::counts_csv(best, speeds) {
             write("counts.csv", text)?;
         }
-        let text = export::summary(best, speeds, file.case.flow.mach);
+        let text = export::summary(best, speeds, file.case.flow.mach, result.density);
         write("flutter_summary.f06", text)?;
     }
     let archive = out.join("state_space.npz");
