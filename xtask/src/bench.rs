@@ -127,17 +127,31 @@ fn values(solution: &Solution, count: usize, largest: f64) -> Result<Duration, B
 }
 
 fn heading() -> String {
-    let output = |program: &str, arguments: &[&str]| {
-        Command::new(program)
-            .args(arguments)
-            .output()
-            .ok()
-            .filter(|output| output.status.success())
-            .map_or_else(
-                || "unknown".to_owned(),
-                |output| String::from_utf8_lossy(&output.stdout).trim().to_owned(),
-            )
-    };
+    format!(
+        "# Speed and memory\n\n\
+         Written by `cargo xtask bench`. {}, {}, commit {}, release \
+         profile without `target-cpu=native`. Times are of one run and those of a machine that \
+         may have had other work; ratios are of the same run.\n",
+        machine(),
+        output("rustc", &["--version"]),
+        output("git", &["rev-parse", "--short", "HEAD"]),
+    )
+}
+
+fn output(program: &str, arguments: &[&str]) -> String {
+    Command::new(program)
+        .args(arguments)
+        .output()
+        .ok()
+        .filter(|output| output.status.success())
+        .map_or_else(
+            || "unknown".to_owned(),
+            |output| String::from_utf8_lossy(&output.stdout).trim().to_owned(),
+        )
+}
+
+/// Threads and processor.
+pub(crate) fn machine() -> String {
     let processor = std::fs::read_to_string("/proc/cpuinfo")
         .ok()
         .and_then(|text| {
@@ -145,15 +159,8 @@ fn heading() -> String {
             Some(line.split_once(':')?.1.trim().to_owned())
         })
         .unwrap_or_else(|| "unknown processor".to_owned());
-    format!(
-        "# Speed and memory\n\n\
-         Written by `cargo xtask bench`. {} threads of {processor}, {}, commit {}, release \
-         profile without `target-cpu=native`. Times are of one run and those of a machine that \
-         may have had other work; ratios are of the same run.\n",
-        std::thread::available_parallelism().map_or(1, usize::from),
-        output("rustc", &["--version"]),
-        output("git", &["rev-parse", "--short", "HEAD"]),
-    )
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    format!("{threads} threads of {processor}")
 }
 
 /// Shortest of several runs, by one evaluation.

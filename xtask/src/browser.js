@@ -47,12 +47,27 @@
     canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft" }));
     check("it turns by the keyboard", held !== canvas.toDataURL());
     const turned = canvas.toDataURL();
+    const wheel = (options) => {
+      const event = new WheelEvent("wheel", { deltaY: 100, cancelable: true, bubbles: true, ...options });
+      canvas.dispatchEvent(event);
+      return event.defaultPrevented;
+    };
+    canvas.blur();
+    check("the wheel over the viewer scrolls the page", !wheel({}));
+    check("with Ctrl it zooms", wheel({ ctrlKey: true }));
+    canvas.focus({ preventScroll: true });
+    check("once the viewer has focus it zooms", wheel({}));
+    canvas.blur();
     select.value = "pressure";
     select.dispatchEvent(new Event("change"));
     check("the steady pressure is shown", select.value === "pressure" && turned !== canvas.toDataURL());
   } catch (error) {
     check(`the page does as it is told: ${error}`, false);
   }
+  const heights = [...document.querySelectorAll(".plot svg text")].map((text) =>
+    parseFloat(getComputedStyle(text).fontSize) * (text.ownerSVGElement.getBoundingClientRect().width / 1000))
+    .filter((height) => height > 0);
+  check("letters of the diagrams are large enough", Math.min(...heights) > 11.5, Math.min(...heights).toFixed(1));
   const width = document.documentElement.scrollWidth;
   check("nothing is wider than the window", width <= innerWidth, `${width} of ${innerWidth}`);
   const cut = [...document.querySelectorAll(".scroll")].filter((part) => part.scrollWidth > part.clientWidth);

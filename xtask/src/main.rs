@@ -1,10 +1,12 @@
 //! Chores: `cargo xtask mesh wing --chord 0.25 --span 2 wing.msh`, `cargo xtask validate`,
-//! `cargo xtask samples FOLDER`.
+//! `cargo xtask paper`, `cargo xtask samples FOLDER`.
 
 mod bench;
 mod browser;
 mod exports;
+mod marked;
 mod mesh;
+mod paper;
 mod samples;
 mod scaneagle;
 mod validate;
@@ -36,6 +38,9 @@ enum Chore {
     /// Make the surface of the ScanEagle-like aircraft from its table of dimensions
     #[command(subcommand)]
     Scaneagle(scaneagle::ScanEagle),
+    /// Reproduce figures and tables of the paper (IFASD-2009-119, section 5) with the
+    /// ScanEagle-like aircraft
+    Paper(paper::Paper),
     /// Compare genuine result files below a folder with independent readers, node by node
     Samples(samples::Samples),
 }
@@ -50,6 +55,10 @@ fn main() -> ExitCode {
             Err(error) => refused(&error),
         },
         Chore::Bench(bench) => match bench.run() {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => refused(&error),
+        },
+        Chore::Paper(paper) => match paper.run() {
             Ok(()) => ExitCode::SUCCESS,
             Err(error) => refused(&error),
         },

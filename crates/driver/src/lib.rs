@@ -7,6 +7,7 @@
 //! | [`cache`] | content-addressed store, hashed before it is decoded |
 //! | [`gaf_json`], [`json`] | exchange files |
 //! | [`plot`] | root locus, V-g-f diagram and mode shapes as SVG |
+//! | [`study`] | forces of a case once, then Q, fits and sweeps for another program |
 //! | [`failure`] | what every message says: what, where, why, what to do |
 //! | [`cli`] | commands and exit codes |
 
@@ -25,4 +26,5 @@ pub mod json;
 mod memory;
 pub mod plot;
 mod report;
+pub mod study;
 mod terminal;

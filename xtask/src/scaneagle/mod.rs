@@ -16,7 +16,7 @@ use params::{ParameterError, Parameters};
 use surface::{SurfaceError, surface};
 
 /// The dimensions of the case.
-const TABLE: &str = concat!(
+pub(crate) const TABLE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../cases/scaneagle/geometry.toml"
 );
@@ -33,13 +33,13 @@ pub(crate) enum ScanEagle {
 pub(crate) struct Mesh {
     /// A [size.NAME] of the table: 3k, 10k, 34k
     #[arg(long, default_value = "10k")]
-    size: String,
+    pub(crate) size: String,
     /// Table of dimensions
     #[arg(long, default_value = TABLE)]
-    params: PathBuf,
+    pub(crate) params: PathBuf,
     /// File to write [default: scaneagle_SIZE.msh here]
     #[arg(long)]
-    out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// Why no mesh was made.

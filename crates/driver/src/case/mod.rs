@@ -68,6 +68,7 @@ pub struct CaseFile {
     /// The file's stem, or its folder's name for `case.toml`.
     pub name: String,
     folder: PathBuf,
+    path: PathBuf,
 }
 
 impl CaseFile {
@@ -92,9 +93,15 @@ impl CaseFile {
             places,
             name: case_name(&file),
             folder,
+            path: file,
         };
         check::check(&read)?;
         Ok(read)
+    }
+
+    /// The case file itself.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// A path of the case file, which counts from the case file's folder.

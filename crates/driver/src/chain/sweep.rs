@@ -14,6 +14,7 @@ use fladder_stability::{
     self as stability, Aerodynamics, DEFAULT_DAMPING_LIMIT, PartLoads, PiecewiseQuadratic,
     PkForm, REACH, Schedule, StateMatrix, Sweep, SweepError, SweepResult, System,
 };
+use std::time::{Duration, Instant};
 
 /// Misfit of the rational model, as a part of the largest entry, above which p2, which
 /// meets the samples, may be the better method.
@@ -24,6 +25,8 @@ pub(crate) struct Swept {
     pub(crate) result: SweepResult,
     /// State-space models at the first, the middle and the last point.
     pub(crate) states: Vec<StateMatrix>,
+    /// What the eigenproblems, their tracking and the crossings took.
+    pub(crate) time: Duration,
 }
 
 /// Sweeps the case.
@@ -35,7 +38,7 @@ pub(crate) fn run(
     file: &CaseFile,
     structure: &StructureData,
     forces: &Forces,
-    method: Method,
+    method: impl Into<stability::Method>,
     console: &Console,
 ) -> Result<Swept, Failure> {
     let fit = fit(file, forces)?;
@@ -87,7 +90,9 @@ pub(crate) fn run(
     };
     let bar = Bar::new(console.is_quiet());
     bar.begin("sweeping speeds", sweep.steps() as u64);
+    let start = Instant::now();
     let mut result = sweep.run(&bar).map_err(|error| not_swept(file, &error))?;
+    let time = start.elapsed();
     bar.clear();
     let wanted = file
         .case
@@ -102,7 +107,11 @@ pub(crate) fn run(
         .into_iter()
         .map(|number| sweep.state_matrix(&rational, number as f64))
         .collect();
-    Ok(Swept { result, states })
+    Ok(Swept {
+        result,
+        states,
+        time,
+    })
 }
 
 /// The piecewise quadratic of the samples.

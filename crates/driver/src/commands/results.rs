@@ -41,7 +41,7 @@ pub(crate) fn results(
     let speeds = Conditions::of(&file)?.speeds();
     let out = session.results_folder(&file);
     let mut own = None;
-    let mut facts = vec![("case".to_owned(), path.display().to_string())];
+    let mut facts = report::inputs(&file, &session.common.set);
     let (structure, forces) = if forces::are_given(&file) {
         let structure = StructureData::read(&file)?;
         report::structure(console, &structure, None);
@@ -169,7 +169,7 @@ fn tables(
         if let Some(text) = report::counts_csv(best, speeds) {
             write("counts.csv", text)?;
         }
-        let text = export::summary(best, speeds, file.case.flow.mach);
+        let text = export::summary(best, speeds, file.case.flow.mach, result.density);
         write("flutter_summary.f06", text)?;
     }
     let archive = out.join("state_space.npz");

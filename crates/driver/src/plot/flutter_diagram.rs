@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::label::Labels;
 use super::layout::{LEFT, TOP, WIDTH, footer, heading, legend, marker_stride, right_edge};
 use super::panel::Panel;
-use super::style::{Styles, cross};
+use super::style::{Styles, crosses};
 use super::svg::{GREY, Svg};
 use super::{MethodResult, Subject};
 use crate::figures::three_digits;
@@ -26,7 +26,7 @@ pub fn flutter_diagram(subject: &Subject<'_>) -> String {
     heading(&mut svg, subject, "V-g-f diagram", method);
     let (upper, lower) = panels(lines);
     let styles = Styles::of(lines.branches.iter().map(|branch| branch.name.as_str()));
-    let crosses = subject.crosses();
+    let beside = subject.crosses();
     for (panel, quantity, name) in [
         (&upper, Quantity::Frequency, "frequency"),
         (&lower, Quantity::Damping, "damping"),
@@ -38,16 +38,17 @@ pub fn flutter_diagram(subject: &Subject<'_>) -> String {
         for branch in &lines.branches {
             curves.extend(draw_branch(&mut svg, panel, quantity, branch, &styles));
         }
-        for branch in crosses.iter().flat_map(|pk| &pk.branches) {
+        for branch in beside.iter().flat_map(|pk| &pk.branches) {
             let colour = styles.get(&branch.name).map_or(GREY, |style| style.colour);
-            for (speed, value) in quantity.of(branch).step_by(2) {
-                cross(&mut svg, panel.at(speed, value), colour);
-            }
+            let points = quantity.of(branch).step_by(2);
+            let places = points.map(|(speed, value)| panel.at(speed, value));
+            let places: Vec<[f64; 2]> = places.filter(|at| panel.reaches(*at)).collect();
+            crosses(&mut svg, &places, colour);
         }
         svg.close();
         crossings(&mut svg, panel, quantity, lines, &curves);
     }
-    legend(&mut svg, lines, &styles, crosses.is_some(), HEIGHT);
+    legend(&mut svg, lines, &styles, beside.is_some(), HEIGHT);
     footer(
         &mut svg,
         HEIGHT,

@@ -1,6 +1,6 @@
 //! Heading, legend and footer common to both pictures.
 
-use super::style::{Styles, cross};
+use super::style::{Styles, crosses};
 use super::svg::{Anchor, GREY, Svg, Type, text_width};
 use super::{MethodResult, Subject};
 
@@ -85,7 +85,7 @@ pub(super) fn legend(
         y += LEGEND_ROW;
     }
     if has_crosses {
-        cross(svg, [left + 13.0, y + 4.0], GREY);
+        crosses(svg, &[[left + 13.0, y + 4.0]], GREY);
         svg.text([left + 34.0, y + 8.0], "p-k", look);
     }
 }

@@ -1,5 +1,5 @@
-//! Pictures as SVG: the root locus and the V-g-f diagram of a sweep, and modes on the
-//! surface.
+//! Pictures as SVG: the root locus and the V-g-f diagram of a sweep, sheets of diagrams,
+//! modes on the surface, meshes.
 
 mod axis;
 mod curves;
@@ -9,8 +9,11 @@ mod layout;
 mod mode_shape;
 mod panel;
 mod root_locus;
+mod sheet;
 mod style;
 mod svg;
+mod view;
+mod wireframe;
 
 pub(crate) use svg::escape;
 
@@ -18,6 +21,8 @@ pub use curves::{Curve, Curves, Drawn, curves};
 pub use flutter_diagram::flutter_diagram;
 pub use mode_shape::{ModePicture, mode_shape};
 pub use root_locus::root_locus;
+pub use sheet::{Graph, Mark, Series, Sheet, sheet};
+pub use wireframe::{Wireframe, wireframe};
 
 use fladder_stability::{MethodResult, Methods};
 

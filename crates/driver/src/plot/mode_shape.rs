@@ -4,7 +4,8 @@
 //! outline at rest. Colour is the displacement along the direction of the largest
 //! one: node lines are pale, what moves the other way is blue.
 
-use super::svg::{Anchor, GREY, Svg, Type};
+use super::svg::{Anchor, Svg, Type};
+use super::view::{HEIGHT, LIGHT, MARGIN, Page, View, WIDTH, heading};
 use fladder_mesh::{TriMesh, Vec3};
 use std::collections::BTreeMap;
 
@@ -19,20 +20,8 @@ pub struct ModePicture<'a> {
     pub displacement: &'a [Vec3],
 }
 
-const WIDTH: f64 = 900.0;
-const HEIGHT: f64 = 560.0;
-const MARGIN: f64 = 30.0;
-const TOP: f64 = 74.0;
-const BOTTOM: f64 = 46.0;
-
 /// Largest displacement in the picture, relative to the diagonal of the surface.
 const DEFLECTION: f64 = 0.08;
-
-/// To the eye, from the middle of the surface.
-const EYE: [f64; 3] = [-0.62, -0.42, 0.66];
-
-/// From where light falls, in the axes of the picture: right, up, to the eye.
-const LIGHT: [f64; 3] = [-0.35, 0.5, 0.79];
 
 /// Edges sharper than this cosine between normals belong to the outline at rest.
 const SHARP: f64 = 0.6;
@@ -44,64 +33,6 @@ const MOST_TRIANGLES: usize = 3500;
 /// Steps of colour on each side, and of shade.
 const COLOURS: f64 = 10.0;
 const SHADES: f64 = 8.0;
-
-/// Axes of the picture.
-struct View {
-    right: Vec3,
-    up: Vec3,
-    eye: Vec3,
-}
-
-impl View {
-    fn new() -> Self {
-        let eye = Vec3::from(EYE).normalize();
-        let right = Vec3::z().cross(&eye).normalize();
-        Self {
-            right,
-            up: eye.cross(&right),
-            eye,
-        }
-    }
-
-    /// Right, up, towards the eye.
-    fn turn(&self, p: &Vec3) -> Vec3 {
-        Vec3::new(self.right.dot(p), self.up.dot(p), self.eye.dot(p))
-    }
-}
-
-/// Where points of the view lie on the page.
-struct Page {
-    scale: f64,
-    low: [f64; 2],
-    corner: [f64; 2],
-}
-
-impl Page {
-    fn around<'a>(points: impl Iterator<Item = &'a Vec3>) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for point in points {
-            for k in 0..2 {
-                low[k] = low[k].min(point[k]);
-                high[k] = high[k].max(point[k]);
-            }
-        }
-        let size = [high[0] - low[0], high[1] - low[1]];
-        let room = [WIDTH - 2.0 * MARGIN, HEIGHT - TOP - BOTTOM];
-        let scale = (room[0] / size[0]).min(room[1] / size[1]);
-        let corner = [
-            MARGIN + 0.5 * (room[0] - scale * size[0]),
-            HEIGHT - BOTTOM - 0.5 * (room[1] - scale * size[1]),
-        ];
-        Self { scale, low, corner }
-    }
-
-    fn place(&self, p: &Vec3) -> [f64; 2] {
-        [
-            self.corner[0] + self.scale * (p.x - self.low[0]),
-            self.corner[1] - self.scale * (p.y - self.low[1]),
-        ]
-    }
-}
 
 /// The picture as an SVG file; `None` where the surface or the mode is not
 /// finite or has no extent.
@@ -136,26 +67,11 @@ pub fn mode_shape(picture: &ModePicture<'_>) -> Option<String> {
         .collect();
     let page = Page::around(rest.iter().chain(&moved));
     let mut svg = Svg::new(WIDTH, HEIGHT);
-    svg.text(
-        [MARGIN, 34.0],
-        title,
-        Type {
-            is_bold: true,
-            ..Type::new(18.0, Anchor::Start)
-        },
-    );
     let caption = format!(
         "deflected so that the largest displacement is {:.0} % of the diagonal; grey: at rest",
         100.0 * DEFLECTION
     );
-    svg.text(
-        [MARGIN, 56.0],
-        &caption,
-        Type {
-            colour: GREY,
-            ..Type::new(12.0, Anchor::Start)
-        },
-    );
+    heading(&mut svg, title, &caption);
     for [a, b] in outline(mesh, &rest) {
         svg.line(
             page.place(&rest[a as usize]),

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::label::Labels;
 use super::layout::{LEFT, TOP, WIDTH, footer, heading, legend, marker_stride, right_edge};
 use super::panel::Panel;
-use super::style::{Styles, cross};
+use super::style::{Styles, crosses};
 use super::svg::{Anchor, GREY, Svg, Type};
 use super::{MethodResult, Subject};
 use crate::figures::three_digits;
@@ -35,9 +35,9 @@ pub fn root_locus(subject: &Subject<'_>) -> String {
     }
     for branch in subject.crosses().iter().flat_map(|pk| &pk.branches) {
         let colour = styles.get(&branch.name).map_or(GREY, |style| style.colour);
-        for (g, k) in branch.g.iter().zip(&branch.k).step_by(2) {
-            cross(&mut svg, panel.at(*g, *k), colour);
-        }
+        let points = branch.g.iter().zip(&branch.k).step_by(2);
+        let places: Vec<[f64; 2]> = points.map(|(g, k)| panel.at(*g, *k)).collect();
+        crosses(&mut svg, &places, colour);
     }
     svg.close();
     crossings(&mut svg, &panel, lines, &curves);

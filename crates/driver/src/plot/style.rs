@@ -41,7 +41,7 @@ pub(super) struct Style {
 }
 
 impl Style {
-    fn numbered(number: usize) -> Self {
+    pub(super) fn numbered(number: usize) -> Self {
         Self {
             colour: COLOURS[number % COLOURS.len()],
             marker: MARKERS[number % MARKERS.len()],
@@ -86,11 +86,9 @@ impl Style {
     }
 }
 
-/// Draws the cross of the p-k method.
-pub(super) fn cross(svg: &mut Svg, [x, y]: [f64; 2], colour: &str) {
-    const HALF: f64 = 3.0;
-    svg.line([x - HALF, y - HALF], [x + HALF, y + HALF], colour, 1.1);
-    svg.line([x - HALF, y + HALF], [x + HALF, y - HALF], colour, 1.1);
+/// Draws crosses of the p-k method.
+pub(super) fn crosses(svg: &mut Svg, places: &[[f64; 2]], colour: &str) {
+    svg.crosses(places, 3.0, colour, 1.1);
 }
 
 /// Looks by name of the branch.

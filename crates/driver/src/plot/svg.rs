@@ -78,6 +78,29 @@ impl Svg {
         ));
     }
 
+    /// A polyline with a pattern of dashes, for example `7 4`; empty: solid.
+    pub(super) fn dashed(
+        &mut self,
+        points: &[[f64; 2]],
+        colour: &str,
+        width: f64,
+        pattern: &str,
+    ) {
+        let list: Vec<String> = points
+            .iter()
+            .map(|[x, y]| format!("{},{}", px(*x), px(*y)))
+            .collect();
+        let dashes = if pattern.is_empty() {
+            String::new()
+        } else {
+            format!(r#" stroke-dasharray="{pattern}""#)
+        };
+        self.push(&format!(
+            r#"<polyline points="{}" fill="none" stroke="{colour}" stroke-width="{width}" stroke-linejoin="round"{dashes}/>"#,
+            list.join(" ")
+        ));
+    }
+
     pub(super) fn polygon(&mut self, points: &[[f64; 2]], fill: &str, stroke: &str) {
         let list: Vec<String> = points
             .iter()
@@ -98,6 +121,60 @@ impl Svg {
         }
         self.push(&format!(
             r#"<path d="{path}" fill="{colour}" stroke="{colour}" stroke-width="0.6"/>"#
+        ));
+    }
+
+    /// Triangles with borders, corners in units of `unit` pixels.
+    pub(super) fn outlined_triangles(
+        &mut self,
+        triangles: &[[[i32; 2]; 3]],
+        unit: f64,
+        fill: &str,
+        stroke: &str,
+        width: f64,
+    ) {
+        let mut path = String::new();
+        for [[x, y], [x1, y1], [x2, y2]] in triangles {
+            // Relative steps are shorter; writing to a string cannot fail.
+            let _ = write!(
+                path,
+                "M{x} {y}l{} {} {} {}z",
+                x1 - x,
+                y1 - y,
+                x2 - x1,
+                y2 - y1
+            );
+        }
+        self.push(&format!(
+            r#"<path transform="scale({unit})" d="{path}" fill="{fill}" stroke="{stroke}" stroke-width="{}" stroke-linejoin="round"/>"#,
+            width / unit
+        ));
+    }
+
+    /// Diagonal crosses, all in one path.
+    pub(super) fn crosses(
+        &mut self,
+        centres: &[[f64; 2]],
+        half: f64,
+        colour: &str,
+        width: f64,
+    ) {
+        if centres.is_empty() {
+            return;
+        }
+        let mut path = String::new();
+        let (size, back) = (px(2.0 * half), px(-2.0 * half));
+        for [x, y] in centres {
+            // Writing to a string cannot fail.
+            let _ = write!(
+                path,
+                "M{} {}l{size} {size}m0 {back}l{back} {size}",
+                px(x - half),
+                px(y - half)
+            );
+        }
+        self.push(&format!(
+            r#"<path d="{path}" fill="none" stroke="{colour}" stroke-width="{width}"/>"#
         ));
     }
 

@@ -44,7 +44,7 @@ pub(crate) fn own_forces(
     steady_loads(console, file, aircraft, &solution.steady);
 }
 
-/// Mesh, key of the forces and effort, by name.
+/// Size of the surface and effort, by name.
 pub(crate) fn facts(aircraft: &Aircraft, forces: &OwnForces) -> Vec<(String, String)> {
     let sizes = &forces.stored.solution.sizes;
     let effort = match &forces.origin {
@@ -67,7 +67,6 @@ pub(crate) fn facts(aircraft: &Aircraft, forces: &OwnForces) -> Vec<(String, Str
                 sizes.wake_elements
             ),
         ),
-        ("hash of all inputs of the forces", forces.key.to_hex()),
         ("effort", effort),
     ]
     .map(|(name, value)| (name.to_owned(), value))

@@ -6,6 +6,7 @@ mod date;
 mod derivatives;
 mod flight;
 mod forces;
+mod inputs;
 mod mode_pictures;
 mod page;
 mod pictures;
@@ -20,6 +21,7 @@ pub(crate) use date::utc;
 pub(crate) use derivatives::{derivatives, derivatives_csv, document as derivatives_document};
 pub(crate) use flight::flight_csv;
 pub(crate) use forces::{facts, own_forces, sample, steady_forces, wake_jumps};
+pub(crate) use inputs::inputs;
 pub(crate) use mode_pictures::{
     Motion, Named, Shown, flutter_motions, mode_motions, mode_pictures, picture_file, stills,
     structure_picture, surface_picture,

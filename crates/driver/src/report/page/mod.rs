@@ -61,8 +61,8 @@ const VIEWER: &str = "<div class=\"live\"><div class=\"controls\"><label>motion 
 <input id=\"amplitude\" type=\"range\" min=\"0\" max=\"20\" value=\"6\" step=\"0.5\"></label>\
 <button id=\"play\" type=\"button\">pause</button></div>\
 <canvas id=\"viewer\" width=\"1040\" height=\"560\" tabindex=\"0\" \
-aria-label=\"wetted surface with the chosen motion\"></canvas><p class=\"hint\">Drag to turn, wheel \
-to zoom; arrows, + and − and the space bar do the same.</p></div>\n";
+aria-label=\"wetted surface with the chosen motion\"></canvas><p class=\"hint\">Drag to turn; the wheel \
+zooms once the surface is clicked, or with Ctrl; arrows, + and − and the space bar do the same.</p></div>\n";
 
 /// The whole page.
 pub(crate) fn page(page: &Page<'_>) -> String {

@@ -50,7 +50,11 @@
     }
 
     draw() {
-      const { left, right, top, bottom } = { left: 84, right: this.width - 16, top: 12, bottom: this.height - 56 };
+      // Letters keep their size on narrow screens: the drawing shrinks, they grow.
+      const seen = this.holder.clientWidth || this.width;
+      this.letters = Math.max(1, Math.min(1.8, this.width / seen));
+      const { left, right, top, bottom } = { left: 84 * this.letters, right: this.width - 16, top: 12,
+        bottom: this.height - 56 * this.letters };
       this.lineData = this.lines().filter((line) => shown.has(line.branch));
       const all = this.lines().flatMap((line) => line.points);
       const [x, y] = this.view || this.limits(all);
@@ -92,22 +96,23 @@
           draw(n * step, (n * step).toFixed(decimals).replace("-", "−"), n === 0);
         }
       };
+      const [small, large] = [13 * this.letters, 14 * this.letters];
       const line = (x1, y1, x2, y2, isZero) => element(this.svg, "line",
         { x1, y1, x2, y2, stroke: isZero ? "#777" : "#e3e3e3", "stroke-width": isZero ? 1.5 : 1 });
-      tick(x, 9, (value, text, isZero) => {
+      tick(x, Math.round(9 / this.letters), (value, text, isZero) => {
         const [at] = this.place([value, y[0]]);
         line(at, top, at, bottom, isZero);
-        element(this.svg, "text", { x: at, y: bottom + 18, "text-anchor": "middle", "font-size": 13 }, text);
+        element(this.svg, "text", { x: at, y: bottom + 18 * this.letters, "text-anchor": "middle", "font-size": small }, text);
       });
       tick(y, 7, (value, text, isZero) => {
         const [, at] = this.place([x[0], value]);
         line(left, at, right, at, isZero);
-        element(this.svg, "text", { x: left - 8, y: at + 4, "text-anchor": "end", "font-size": 13 }, text);
+        element(this.svg, "text", { x: left - 8, y: at + 4 * this.letters, "text-anchor": "end", "font-size": small }, text);
       });
       element(this.svg, "rect", { x: left, y: top, width: right - left, height: bottom - top, fill: "none", stroke: "#222" });
-      element(this.svg, "text", { x: (left + right) / 2, y: bottom + 44, "text-anchor": "middle", "font-size": 14 }, this.xName());
-      const [tx, ty] = [22, (top + bottom) / 2];
-      element(this.svg, "text", { x: tx, y: ty, "text-anchor": "middle", "font-size": 14, transform: `rotate(-90 ${tx} ${ty})` }, this.yName);
+      element(this.svg, "text", { x: (left + right) / 2, y: bottom + 44 * this.letters, "text-anchor": "middle", "font-size": large }, this.xName());
+      const [tx, ty] = [22 * this.letters, (top + bottom) / 2];
+      element(this.svg, "text", { x: tx, y: ty, "text-anchor": "middle", "font-size": large, transform: `rotate(-90 ${tx} ${ty})` }, this.yName);
     }
 
     pixel(event) {
@@ -209,6 +214,7 @@
     limits: (all) => [extent(all.map((p) => p[0]), 0), extent(all.map((p) => Math.max(-0.6, Math.min(0.6, p[1]))).concat([-0.05, 0.05]), 0.03)],
   });
   const drawAll = () => plots.forEach((plot) => plot.draw());
+  addEventListener("resize", () => { if (plots.every((plot) => plot.lineData)) drawAll(); });
 
   const legend = document.getElementById("legend");
   if (legend) {
@@ -382,7 +388,10 @@
     held = [event.clientX, event.clientY];
     draw();
   });
+  canvas.addEventListener("pointerdown", () => canvas.focus({ preventScroll: true }));
   canvas.addEventListener("wheel", (event) => {
+    // The page scrolls, until the viewer is clicked or Ctrl is held.
+    if (!event.ctrlKey && document.activeElement !== canvas) return;
     event.preventDefault();
     state.zoom = Math.max(0.3, Math.min(12, state.zoom * (event.deltaY > 0 ? 0.9 : 1.1)));
     draw();
