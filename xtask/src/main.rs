@@ -33,7 +33,7 @@ enum Chore {
     Browser(browser::Browser),
     /// Read the files of a run with NumPy and pyNastran and compare them with its JSON
     Exports(exports::Exports),
-    /// Make the surface of the ScanEagle-like aircraft from its table of dimensions
+    /// Make surface and modes of the ScanEagle-like aircraft from its tables
     #[command(subcommand)]
     Scaneagle(scaneagle::ScanEagle),
     /// Compare genuine result files below a folder with independent readers, node by node
