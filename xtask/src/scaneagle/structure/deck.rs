@@ -44,8 +44,9 @@ fn write_deck(text: &mut String, model: &Model) -> std::fmt::Result {
         }
     }
     let mut element = mesh.cells.len();
-    for (number, (node, mass)) in joints.masses.iter().enumerate() {
+    for (number, balance) in joints.masses.iter().enumerate() {
         element += 1;
+        let (node, mass) = (balance.node, balance.mass);
         writeln!(text, "*ELEMENT, TYPE=MASS, ELSET=BAL{number}\n{element},{node}")?;
         writeln!(text, "*MASS, ELSET=BAL{number}\n{mass:.6e}")?;
     }

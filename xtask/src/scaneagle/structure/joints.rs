@@ -42,6 +42,16 @@ pub(super) struct Spring {
     pub(super) stiffness: f64,
 }
 
+/// A mass that turns with a control.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BalanceMass {
+    pub(super) control: &'static str,
+    pub(super) port: bool,
+    pub(super) node: usize,
+    /// kg
+    pub(super) mass: f64,
+}
+
 /// Joints and the nodes made for them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Joints {
@@ -50,8 +60,7 @@ pub(super) struct Joints {
     pub(super) rigid: Vec<Rigid>,
     pub(super) equations: Vec<Equation>,
     pub(super) springs: Vec<Spring>,
-    /// Node and mass in kg.
-    pub(super) masses: Vec<(usize, f64)>,
+    pub(super) masses: Vec<BalanceMass>,
     shells: usize,
 }
 
@@ -111,7 +120,12 @@ impl Joints {
                 input.balance.iter().filter(|balance| balance.hinge == number)
             {
                 let node = self.put(at(*place, 0.0, *s));
-                self.masses.push((node, *mass));
+                self.masses.push(BalanceMass {
+                    control: control.name,
+                    port,
+                    node,
+                    mass: *mass,
+                });
                 moving.push(node);
             }
             self.rigid.push(Rigid {

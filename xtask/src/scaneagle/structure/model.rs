@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use fladder_mesh::Vec3;
 use fladder_modal::{Inertia, RigidBody};
 
-use super::frame::Frame;
+use super::frame::{ControlFrame, Frame};
 use super::joints::Joints;
 use super::laminate::Laminate;
 use super::mass::{Weight, weight};
@@ -27,6 +27,21 @@ pub(super) struct Model {
     pub(super) body: RigidBody,
     /// Mass of every set, both sides, kg.
     pub(super) masses: BTreeMap<String, f64>,
+    pub(super) controls: Vec<Moments>,
+}
+
+/// A control of the starboard side about its hinge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moments {
+    pub(super) name: &'static str,
+    /// Without balance, kg.
+    pub(super) mass: f64,
+    /// Without balance, positive with its centre aft, kg m.
+    pub(super) static_moment: f64,
+    /// Part of it that the balance takes away.
+    pub(super) balanced: f64,
+    /// With balance, kg m².
+    pub(super) inertia: f64,
 }
 
 impl Model {
@@ -75,11 +90,15 @@ impl Model {
             total += part;
         }
         let first = mesh.nodes.len() + 1;
-        for (node, mass) in &joints.masses {
-            let part = Weight::point(&joints.nodes[node - first]) * *mass;
-            masses.entry("balance".to_owned()).and_modify(|sum| *sum += mass).or_insert(*mass);
-            total += part;
+        for balance in &joints.masses {
+            total += Weight::point(&joints.nodes[balance.node - first]) * balance.mass;
+            *masses.entry("balance".to_owned()).or_insert(0.0) += balance.mass;
         }
+        let controls = frame
+            .controls
+            .iter()
+            .map(|control| moments(control, &frame, &mesh, (&laminates, &joints)))
+            .collect();
         let [begin, end, tip] = frame.wing.marks;
         let line = |a: f64, b: f64| {
             (frame.wing.point(0.4, 0.0, b) - frame.wing.point(0.4, 0.0, a)).normalize()
@@ -91,8 +110,45 @@ impl Model {
             modes: table.modes.count,
             body: total.body(),
             masses,
+            controls,
             mesh,
         })
+    }
+}
+
+fn moments(
+    control: &ControlFrame,
+    frame: &Frame<'_>,
+    mesh: &ShellMesh,
+    (laminates, joints): (&BTreeMap<String, Laminate>, &Joints),
+) -> Moments {
+    let line = |s: f64| frame.wing.point(frame.hinge, 0.0, s);
+    let start = line(control.ends[0]);
+    let axis = (line(control.ends[1]) - start).normalize();
+    // Aft in the plane of the control.
+    let aft = (Vec3::x() - axis * axis.x).normalize();
+    let mut own = Weight::default();
+    for ending in ["CS", "CSW", "RIBCS"] {
+        let set = format!("{}{ending}", control.letter);
+        own += weight(mesh, &mesh.sets[&set]) * laminates[&set].area_density;
+    }
+    let first = mesh.nodes.len() + 1;
+    let mut balance = Weight::default();
+    for mass in joints.masses.iter().filter(|mass| mass.control == control.name && !mass.port) {
+        balance += Weight::point(&joints.nodes[mass.node - first]) * mass.mass;
+    }
+    let lever = |weight: &Weight| (weight.moment - start * weight.amount).dot(&aft);
+    let mut both = own;
+    both += balance;
+    // ∫ |r × axis|² dm about the start of the hinge line.
+    let about = both.second - both.moment * start.transpose() - start * both.moment.transpose()
+        + start * start.transpose() * both.amount;
+    Moments {
+        name: control.name,
+        mass: own.amount,
+        static_moment: lever(&own),
+        balanced: -lever(&balance) / lever(&own),
+        inertia: about.trace() - (axis.transpose() * about * axis).x,
     }
 }
 

@@ -18,6 +18,17 @@ pub(super) fn model(model: &Model) -> String {
     for (set, mass) in &model.masses {
         let _ = writeln!(text, "  {set:8} {mass:8.4} kg");
     }
+    for control in &model.controls {
+        let _ = writeln!(
+            text,
+            "{}: {:.1} g, static moment {:.3e} kg m, {:.0} % balanced; {:.3e} kg m² with balance",
+            control.name,
+            1e3 * control.mass,
+            control.static_moment,
+            100.0 * control.balanced,
+            control.inertia
+        );
+    }
     text.push_str("integrated:  ");
     text.push_str(&body(&model.body));
     text
