@@ -14,9 +14,10 @@ use super::model::Model;
 /// Sets that carry the surface, by the begin or end of their names.
 fn is_skin(set: &str) -> bool {
     let set = starboard(set);
-    set.starts_with("FUS") || ["LE", "CAP", "BOX", "TE", "CS"].iter().any(|end| {
-        set.len() == end.len() + 1 && set.ends_with(end)
-    })
+    set.starts_with("FUS")
+        || ["LE", "CAP", "BOX", "TE", "CS"]
+            .iter()
+            .any(|end| set.len() == end.len() + 1 && set.ends_with(end))
 }
 
 /// The whole file; the same bytes for the same tables.
@@ -33,7 +34,11 @@ fn write_deck(text: &mut String, model: &Model) -> std::fmt::Result {
     write_nodes(text, "SHELL", 1, &mesh.nodes)?;
     write_nodes(text, "JOINT", first, &joints.nodes)?;
     for (set, cells) in &mesh.sets {
-        let kind = if mesh.cells[cells[0] - 1].len() == 8 { "S8R" } else { "S6" };
+        let kind = if mesh.cells[cells[0] - 1].len() == 8 {
+            "S8R"
+        } else {
+            "S6"
+        };
         writeln!(text, "*ELEMENT, TYPE={kind}, ELSET={set}")?;
         for cell in cells {
             write!(text, "{cell}")?;
@@ -47,7 +52,10 @@ fn write_deck(text: &mut String, model: &Model) -> std::fmt::Result {
     for (number, balance) in joints.masses.iter().enumerate() {
         element += 1;
         let (node, mass) = (balance.node, balance.mass);
-        writeln!(text, "*ELEMENT, TYPE=MASS, ELSET=BAL{number}\n{element},{node}")?;
+        writeln!(
+            text,
+            "*ELEMENT, TYPE=MASS, ELSET=BAL{number}\n{element},{node}"
+        )?;
         writeln!(text, "*MASS, ELSET=BAL{number}\n{mass:.6e}")?;
     }
     for (number, spring) in joints.springs.iter().enumerate() {
@@ -56,7 +64,11 @@ fn write_deck(text: &mut String, model: &Model) -> std::fmt::Result {
         writeln!(text, "** {}", spring.name)?;
         writeln!(text, "*ELEMENT, TYPE=SPRINGA, ELSET=SPR{number}")?;
         writeln!(text, "{element},{scalar},{fixed}")?;
-        writeln!(text, "*SPRING, ELSET=SPR{number}\n\n{:.6e}", spring.stiffness)?;
+        writeln!(
+            text,
+            "*SPRING, ELSET=SPR{number}\n\n{:.6e}",
+            spring.stiffness
+        )?;
         writeln!(text, "*BOUNDARY\n{scalar},2,3\n{fixed},1,3")?;
     }
     write_sections(text, model)?;
@@ -107,19 +119,28 @@ fn write_set(text: &mut String, name: &str, nodes: &[usize]) -> std::fmt::Result
 fn write_sections(text: &mut String, model: &Model) -> std::fmt::Result {
     for (letter, grain) in ['W', 'L'].into_iter().zip(model.grain) {
         for (side, sign) in [("", 1.0), (PORT, -1.0)] {
-            writeln!(text, "*ORIENTATION, NAME=O{letter}{side}, SYSTEM=RECTANGULAR")?;
+            writeln!(
+                text,
+                "*ORIENTATION, NAME=O{letter}{side}, SYSTEM=RECTANGULAR"
+            )?;
             let y = sign * grain.y;
             writeln!(text, "{:.8},{y:.8},{:.8},1.0,0.0,0.0", grain.x, grain.z)?;
         }
     }
-    writeln!(text, "*ORIENTATION, NAME=OF, SYSTEM=RECTANGULAR\n1.0,0.0,0.0,0.0,1.0,0.05")?;
+    writeln!(
+        text,
+        "*ORIENTATION, NAME=OF, SYSTEM=RECTANGULAR\n1.0,0.0,0.0,0.0,1.0,0.05"
+    )?;
     for (set, laminate) in &model.laminates {
         if !model.mesh.sets.contains_key(set) {
             continue;
         }
         let [along, across, shear, transverse] = laminate.moduli;
         let nu = laminate.poisson;
-        writeln!(text, "*MATERIAL, NAME=M{set}\n*ELASTIC,TYPE=ENGINEERING CONSTANTS")?;
+        writeln!(
+            text,
+            "*MATERIAL, NAME=M{set}\n*ELASTIC,TYPE=ENGINEERING CONSTANTS"
+        )?;
         writeln!(
             text,
             "{along:.6e},{across:.6e},{across:.6e},{nu:.6},{nu:.6},{nu:.6},{shear:.6e},{transverse:.6e}"

@@ -98,7 +98,8 @@ impl Joints {
         port: bool,
     ) -> Result<(), String> {
         let places = &table.places;
-        let at = |place: f64, face: f64, s: f64| mirrored(port, frame.wing.point(place, face, s));
+        let at =
+            |place: f64, face: f64, s: f64| mirrored(port, frame.wing.point(place, face, s));
         let four = |chord: [f64; 2], s: f64| -> Result<Vec<usize>, String> {
             chord
                 .into_iter()
@@ -116,8 +117,10 @@ impl Joints {
             let [base, base_turn, own, own_turn] = [place; 4].map(|point| self.put(point));
             let fixed = four([places.rear_spar, box_middle(places)], *s)?;
             let mut moving = four([places.control_spar, places.control_middle], *s)?;
-            for Balance { mass, place, .. } in
-                input.balance.iter().filter(|balance| balance.hinge == number)
+            for Balance { mass, place, .. } in input
+                .balance
+                .iter()
+                .filter(|balance| balance.hinge == number)
             {
                 let node = self.put(at(*place, 0.0, *s));
                 self.masses.push(BalanceMass {
@@ -164,7 +167,12 @@ impl Joints {
     }
 
     /// Wing and fuselage.
-    fn root(&mut self, frame: &Frame<'_>, table: &Table, mesh: &ShellMesh) -> Result<(), String> {
+    fn root(
+        &mut self,
+        frame: &Frame<'_>,
+        table: &Table,
+        mesh: &ShellMesh,
+    ) -> Result<(), String> {
         let places = &table.places;
         let chord = [places.front_spar, places.rear_spar];
         for (number, (x, place)) in frame.spars.into_iter().zip(chord).enumerate() {

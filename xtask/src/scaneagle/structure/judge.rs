@@ -13,9 +13,9 @@ const RIGID_HZ: f64 = 0.05;
 /// Largest relative difference between integrated mass and that of the rigid modes: six digits
 /// of the file, summed over two squares.
 const MASS: f64 = 1e-4;
-/// The same of moments of inertia: plates have a moment of their own about their middle
-/// surface, which the integral leaves out.
-const INERTIA: f64 = 1e-3;
+/// The same of moments of inertia: CalculiX integrates its shells as solids, at two by two
+/// points across.
+const INERTIA: f64 = 5e-4;
 /// Least purity of a symmetric or antisymmetric mode: a pair of equal frequencies mixes.
 const PARITY: f64 = 0.99;
 
@@ -30,7 +30,8 @@ pub(super) struct Judged {
 }
 
 /// Where a mode moves.
-pub(super) const PARTS: [&str; 6] = ["wing up", "in plane", "winglet", "elevon", "rudder", "body"];
+pub(super) const PARTS: [&str; 6] =
+    ["wing up", "in plane", "winglet", "elevon", "rudder", "body"];
 
 /// Refuses what is no free aircraft with a plane of symmetry.
 ///
@@ -39,7 +40,11 @@ pub(super) const PARTS: [&str; 6] = ["wing up", "in plane", "winglet", "elevon",
 pub(super) fn judge(model: &Model, found: &StructuralModel) -> Result<Vec<Judged>, String> {
     let modes = &found.result.modes;
     if modes.len() != model.modes {
-        return Err(format!("{} modes where {} were asked for", modes.len(), model.modes));
+        return Err(format!(
+            "{} modes where {} were asked for",
+            modes.len(),
+            model.modes
+        ));
     }
     for (number, (mode, fit)) in modes.iter().zip(&found.survey.fits).enumerate() {
         let hertz = mode.eigenvalue.abs().sqrt() / std::f64::consts::TAU;
@@ -75,7 +80,9 @@ pub(super) fn judge(model: &Model, found: &StructuralModel) -> Result<Vec<Judged
 
 fn compare(own: &RigidBody, found: &StructuralModel) -> Result<(), String> {
     let recovered = found.rigid_body_from_file.as_ref();
-    let body = recovered.ok_or("the rigid modes give no mass properties")?.body;
+    let body = recovered
+        .ok_or("the rigid modes give no mass properties")?
+        .body;
     let pairs = [
         ("mass", own.mass, body.mass, MASS),
         ("xx", own.inertia.xx, body.inertia.xx, INERTIA),
@@ -108,7 +115,11 @@ fn images(places: &[Vec3]) -> Result<Vec<usize>, String> {
 /// Of the skins: the scalar nodes hold angles, whose sign is another matter.
 fn parity(shape: &[Vec3], image: &[usize], groups: &[Option<usize>]) -> f64 {
     let mirrored = |u: &Vec3| Vec3::new(u.x, -u.y, u.z);
-    let skins = shape.iter().zip(image).zip(groups).filter(|(_, group)| group.is_some());
+    let skins = shape
+        .iter()
+        .zip(image)
+        .zip(groups)
+        .filter(|(_, group)| group.is_some());
     let (mut both, mut all) = (0.0, 0.0);
     for ((u, other), _) in skins {
         both += u.dot(&mirrored(&shape[*other]));

@@ -8,13 +8,23 @@ use flate2::{Compression, GzBuilder};
 use super::solver::{JOB, SolverError};
 
 /// Lines of the head of a result that differ from run to run.
-const RUN: [&str; 5] = ["    1UUSER", "    1UDATE", "    1UTIME", "    1UHOST", "    1UDIR"];
+const RUN: [&str; 5] = [
+    "    1UUSER",
+    "    1UDATE",
+    "    1UTIME",
+    "    1UHOST",
+    "    1UDIR",
+];
 
 /// Writes input, result and tables of the job into a folder; their sizes in bytes.
 ///
 /// # Errors
 /// Files that cannot be read or written.
-pub(super) fn keep(job: &Path, input: &str, folder: &Path) -> Result<Vec<(PathBuf, usize)>, SolverError> {
+pub(super) fn keep(
+    job: &Path,
+    input: &str,
+    folder: &Path,
+) -> Result<Vec<(PathBuf, usize)>, SolverError> {
     let read = |ending: &str| {
         let path = job.join(format!("{JOB}.{ending}"));
         std::fs::read_to_string(&path).map_err(|source| SolverError::File { path, source })
@@ -36,7 +46,10 @@ pub(super) fn keep(job: &Path, input: &str, folder: &Path) -> Result<Vec<(PathBu
             std::fs::write(&path, &bytes)?;
             Ok(bytes.len())
         });
-        let size = written.map_err(|source| SolverError::File { path: path.clone(), source })?;
+        let size = written.map_err(|source| SolverError::File {
+            path: path.clone(),
+            source,
+        })?;
         sizes.push((path, size));
     }
     Ok(sizes)

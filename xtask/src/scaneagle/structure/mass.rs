@@ -50,14 +50,21 @@ impl Mul<f64> for Weight {
     }
 }
 
-/// Area of elements.
-pub(super) fn weight(mesh: &ShellMesh, cells: &[usize]) -> Weight {
+/// Area of elements that are so thick, in m: thickness t spreads the area along the normal n
+/// and adds $t^2/12\,n n^T$ to its second moment.
+pub(super) fn weight(mesh: &ShellMesh, cells: &[usize], thickness: f64) -> Weight {
     let mut sum = Weight::default();
     for cell in cells {
-        let nodes: Vec<Vec3> =
-            mesh.cells[cell - 1].iter().map(|node| mesh.nodes[node - 1]).collect();
+        let nodes: Vec<Vec3> = mesh.cells[cell - 1]
+            .iter()
+            .map(|node| mesh.nodes[node - 1])
+            .collect();
         let (points, shape): (Vec<[f64; 3]>, fn(f64, f64) -> Vec<[f64; 3]>) =
-            if nodes.len() == 8 { (square(), eight) } else { (triangle(), six) };
+            if nodes.len() == 8 {
+                (square(), eight)
+            } else {
+                (triangle(), six)
+            };
         for [r, s, factor] in points {
             let mut sums = [Vec3::zeros(); 3];
             for (node, values) in nodes.iter().zip(shape(r, s)) {
@@ -66,7 +73,12 @@ pub(super) fn weight(mesh: &ShellMesh, cells: &[usize]) -> Weight {
                 }
             }
             let [place, along, across] = sums;
-            sum += Weight::point(&place) * (factor * along.cross(&across).norm());
+            let normal = along.cross(&across);
+            let mut part = Weight::point(&place);
+            part.second += normal
+                * normal.transpose()
+                * (thickness * thickness / 12.0 / normal.norm_squared());
+            sum += part * (factor * normal.norm());
         }
     }
     sum
@@ -74,7 +86,11 @@ pub(super) fn weight(mesh: &ShellMesh, cells: &[usize]) -> Weight {
 
 /// Points of Gauss on the square −1 … 1 with their weights.
 fn square() -> Vec<[f64; 3]> {
-    let line = [(-0.6_f64.sqrt(), 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.6_f64.sqrt(), 5.0 / 9.0)];
+    let line = [
+        (-0.6_f64.sqrt(), 5.0 / 9.0),
+        (0.0, 8.0 / 9.0),
+        (0.6_f64.sqrt(), 5.0 / 9.0),
+    ];
     line.iter()
         .flat_map(|(r, a)| line.map(|(s, b)| [*r, s, a * b]))
         .collect()
@@ -101,7 +117,11 @@ fn eight(r: f64, s: f64) -> Vec<[f64; 3]> {
     let corner = |[a, b]: [f64; 2]| {
         let (u, v) = (1.0 + a * r, 1.0 + b * s);
         let w = a * r + b * s - 1.0;
-        [0.25 * u * v * w, 0.25 * a * v * (w + u), 0.25 * b * u * (w + v)]
+        [
+            0.25 * u * v * w,
+            0.25 * a * v * (w + u),
+            0.25 * b * u * (w + v),
+        ]
     };
     let middle = |[a, b]: [f64; 2]| {
         if a == 0.0 {
@@ -112,7 +132,11 @@ fn eight(r: f64, s: f64) -> Vec<[f64; 3]> {
             [0.5 * u * v, 0.5 * a * v, -s * u]
         }
     };
-    corners.map(corner).into_iter().chain(middles.map(middle)).collect()
+    corners
+        .map(corner)
+        .into_iter()
+        .chain(middles.map(middle))
+        .collect()
 }
 
 /// Of six nodes.

@@ -60,7 +60,11 @@ impl ShellMesh {
 
     fn add(&mut self, set: &str, port: bool, cell: Cell) {
         self.cells.push(cell);
-        let name = if port { format!("{set}{PORT}") } else { set.to_owned() };
+        let name = if port {
+            format!("{set}{PORT}")
+        } else {
+            set.to_owned()
+        };
         self.sets.entry(name).or_default().push(self.cells.len());
     }
 

@@ -10,6 +10,7 @@ mod laminate;
 mod mass;
 mod mesh;
 mod model;
+mod moments;
 mod report;
 mod shells;
 mod solver;

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use fladder_mesh::Vec3;
 use fladder_modal::{Inertia, RigidBody};
 
-use super::frame::{ControlFrame, Frame};
+use super::frame::Frame;
 use super::joints::Joints;
 use super::laminate::Laminate;
 use super::mass::{Weight, weight};
-use super::mesh::{ShellMesh, starboard};
+use super::mesh::{PORT, ShellMesh, starboard};
+use super::moments::{Moments, moments};
 use super::shells::shells;
 use super::table::Table;
 use crate::scaneagle::params::Parameters;
@@ -30,20 +31,6 @@ pub(super) struct Model {
     pub(super) controls: Vec<Moments>,
 }
 
-/// A control of the starboard side about its hinge.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Moments {
-    pub(super) name: &'static str,
-    /// Without balance, kg.
-    pub(super) mass: f64,
-    /// Without balance, positive with its centre aft, kg m.
-    pub(super) static_moment: f64,
-    /// Part of it that the balance takes away.
-    pub(super) balanced: f64,
-    /// With balance, kg m².
-    pub(super) inertia: f64,
-}
-
 impl Model {
     /// Every interval between lines of elements is cut into `refine` parts.
     ///
@@ -57,36 +44,13 @@ impl Model {
         let frame = Frame::new(parameters, table)?;
         let mesh = shells(&frame, table, refine);
         let joints = Joints::new(&frame, table, &mesh)?;
-        let mut areas: BTreeMap<&str, Weight> = BTreeMap::new();
-        for (set, cells) in &mesh.sets {
-            *areas.entry(starboard(set)).or_default() += weight(&mesh, cells);
-        }
-        let mut laminates = BTreeMap::new();
-        for (letter, plates) in [('W', &table.wing), ('L', &table.winglet)] {
-            for (_, ending, layers) in plates.all() {
-                laminates.insert(
-                    format!("{letter}{ending}"),
-                    Laminate::of(layers, &table.material),
-                );
-            }
-        }
-        let shell = Laminate::of(&table.fuselage.shell, &table.material);
-        for set in ["FUS", "FUSN", "FUST"] {
-            laminates.insert(set.to_owned(), shell);
-        }
-        for (number, zone) in table.zone.iter().enumerate() {
-            let set = format!("FUSZ{number}");
-            let mut loaded = shell;
-            loaded.area_density += zone.mass / areas.get(&*set).map_or(1.0, |zone| zone.amount);
-            laminates.insert(set, loaded);
-        }
-        let bulkhead = Laminate::of(&table.fuselage.bulkhead, &table.material);
-        laminates.insert("BULK".to_owned(), bulkhead);
+        let laminates = laminates(table, &mesh);
         let mut total = Weight::default();
         let mut masses = BTreeMap::new();
-        for (set, area) in areas {
-            let part = area * laminates[set].area_density;
-            masses.insert(set.to_owned(), part.amount);
+        for (set, cells) in &mesh.sets {
+            let laminate = &laminates[starboard(set)];
+            let part = weight(&mesh, cells, laminate.thickness) * laminate.area_density;
+            *masses.entry(starboard(set).to_owned()).or_insert(0.0) += part.amount;
             total += part;
         }
         let first = mesh.nodes.len() + 1;
@@ -116,40 +80,30 @@ impl Model {
     }
 }
 
-fn moments(
-    control: &ControlFrame,
-    frame: &Frame<'_>,
-    mesh: &ShellMesh,
-    (laminates, joints): (&BTreeMap<String, Laminate>, &Joints),
-) -> Moments {
-    let line = |s: f64| frame.wing.point(frame.hinge, 0.0, s);
-    let start = line(control.ends[0]);
-    let axis = (line(control.ends[1]) - start).normalize();
-    // Aft in the plane of the control.
-    let aft = (Vec3::x() - axis * axis.x).normalize();
-    let mut own = Weight::default();
-    for ending in ["CS", "CSW", "RIBCS"] {
-        let set = format!("{}{ending}", control.letter);
-        own += weight(mesh, &mesh.sets[&set]) * laminates[&set].area_density;
+/// The plate of every set; what a zone carries is spread over its integrated area.
+fn laminates(table: &Table, mesh: &ShellMesh) -> BTreeMap<String, Laminate> {
+    let plate = |layers| Laminate::of(layers, &table.material);
+    let mut laminates = BTreeMap::new();
+    for (letter, plates) in [('W', &table.wing), ('L', &table.winglet)] {
+        for (_, ending, layers) in plates.all() {
+            laminates.insert(format!("{letter}{ending}"), plate(layers));
+        }
     }
-    let first = mesh.nodes.len() + 1;
-    let mut balance = Weight::default();
-    for mass in joints.masses.iter().filter(|mass| mass.control == control.name && !mass.port) {
-        balance += Weight::point(&joints.nodes[mass.node - first]) * mass.mass;
+    let shell = plate(&table.fuselage.shell);
+    for set in ["FUS", "FUSN", "FUST"] {
+        laminates.insert(set.to_owned(), shell);
     }
-    let lever = |weight: &Weight| (weight.moment - start * weight.amount).dot(&aft);
-    let mut both = own;
-    both += balance;
-    // ∫ |r × axis|² dm about the start of the hinge line.
-    let about = both.second - both.moment * start.transpose() - start * both.moment.transpose()
-        + start * start.transpose() * both.amount;
-    Moments {
-        name: control.name,
-        mass: own.amount,
-        static_moment: lever(&own),
-        balanced: -lever(&balance) / lever(&own),
-        inertia: about.trace() - (axis.transpose() * about * axis).x,
+    for (number, zone) in table.zone.iter().enumerate() {
+        let set = format!("FUSZ{number}");
+        let sides = [set.clone(), format!("{set}{PORT}")];
+        let cells = sides.iter().filter_map(|side| mesh.sets.get(side));
+        let area: f64 = cells.map(|cells| weight(mesh, cells, 0.0).amount).sum();
+        let mut loaded = shell;
+        loaded.area_density += zone.mass / area;
+        laminates.insert(set, loaded);
     }
+    laminates.insert("BULK".to_owned(), plate(&table.fuselage.bulkhead));
+    laminates
 }
 
 impl Weight {

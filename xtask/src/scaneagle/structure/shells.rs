@@ -41,13 +41,18 @@ fn lifting(
     debug_assert!(front < cap && cap < rear);
     let trailing = [rear, f64::midpoint(rear, 1.0), 1.0];
     for face in [1.0, -1.0] {
-        let skin = |place: f64, s: f64| wing.point(place, if place < 1.0 { face } else { 0.0 }, s);
+        let skin =
+            |place: f64, s: f64| wing.point(place, if place < 1.0 { face } else { 0.0 }, s);
         let under = face < 0.0;
         mesh.patch(&name("CAP"), (&caps, stations), under, skin);
         mesh.patch(&name("BOX"), (&boxes, &outside), under, skin);
         let [a, b] = control.ends;
         for part in [
-            outside.iter().filter(|s| **s < a + SAME).copied().collect::<Vec<_>>(),
+            outside
+                .iter()
+                .filter(|s| **s < a + SAME)
+                .copied()
+                .collect::<Vec<_>>(),
             outside.iter().filter(|s| **s > b - SAME).copied().collect(),
         ] {
             mesh.patch(&name("TE"), (&trailing, &part), under, skin);
@@ -60,7 +65,11 @@ fn lifting(
         });
     }
     moving(mesh, frame, table, (control, stations));
-    let ribs: Vec<f64> = stations.iter().copied().filter(|s| is_rib(*s, frame, places, control)).collect();
+    let ribs: Vec<f64> = stations
+        .iter()
+        .copied()
+        .filter(|s| is_rib(*s, frame, places, control))
+        .collect();
     for s in ribs {
         for places in [&caps, &boxes] {
             mesh.patch(&name("RIB"), (&places[..], &across), false, |place, t| {
@@ -79,7 +88,10 @@ fn is_rib(s: f64, frame: &Frame<'_>, places: &Places, control: &ControlFrame) ->
         &[end, tip]
     };
     let wanted = [&places.ribs, &control.hinges, ends];
-    wanted.into_iter().flatten().any(|rib| (rib - s).abs() < SAME)
+    wanted
+        .into_iter()
+        .flatten()
+        .any(|rib| (rib - s).abs() < SAME)
 }
 
 /// The control: a body of its own with a spar, skins to the trailing edge, and ribs.
@@ -138,7 +150,9 @@ fn fuselage(mesh: &mut ShellMesh, frame: &Frame<'_>, table: &Table) {
             Some(zone) => format!("FUSZ{zone}"),
             None => "FUS".to_owned(),
         };
-        mesh.patch(&set, (pair, &frame.angles), false, |x, angle| body.point(x, angle));
+        mesh.patch(&set, (pair, &frame.angles), false, |x, angle| {
+            body.point(x, angle)
+        });
     }
     for x in &shell.bulkheads {
         mesh.fan("BULK", &frame.angles, |part, angle| {

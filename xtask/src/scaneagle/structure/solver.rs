@@ -63,7 +63,10 @@ pub(super) fn solve(program: &Path, folder: &Path, input: &str) -> Result<(), So
     if status.success() && there && !said.contains("*ERROR") {
         return Ok(());
     }
-    let lines: Vec<&str> = said.lines().filter(|line| !line.trim().is_empty()).collect();
+    let lines: Vec<&str> = said
+        .lines()
+        .filter(|line| !line.trim().is_empty())
+        .collect();
     Err(SolverError::Failed {
         status: status.to_string(),
         last: lines[lines.len().saturating_sub(LAST)..].join("\n"),

@@ -171,7 +171,10 @@ impl Table {
         ascending("[places], parts of the chord", &chord)?;
         ascending("places.stations", &places.stations)?;
         for (key, values) in [
-            ("places.side_of_body", std::slice::from_ref(&places.side_of_body)),
+            (
+                "places.side_of_body",
+                std::slice::from_ref(&places.side_of_body),
+            ),
             ("places.ribs", &places.ribs),
         ] {
             if let Some(value) = values.iter().find(|s| !places.stations.contains(s)) {
