@@ -48,11 +48,12 @@ fn a_case_shows_file_modes_and_errors_and_draws_them() {
     assert!((found["recovered"]["inertia"]["xz"].as_f64().unwrap() - 0.0079).abs() < 1e-5);
     assert_eq!(found["stated"], Value::Null);
     let stiffness = found["modes"][6]["generalised_stiffness"].as_f64().unwrap();
-    assert!((stiffness.sqrt() / std::f64::consts::TAU - 7.7009).abs() < 1e-4);
+    assert!((stiffness.sqrt() / std::f64::consts::TAU - 7.701_07).abs() < 1e-4);
     let surface = read_mesh(place.path("views/surface_modes.vtu"), 1.0).unwrap();
     assert_eq!(surface.triangles.len(), 3532);
     let structure = read_mesh(place.path("views/structure_modes.vtu"), 1.0).unwrap();
-    assert_eq!(structure.triangles.len(), 6 * 1378);
+    // Outer skins alone: 1104 elements of eight nodes, 24 of six at nose and tail.
+    assert_eq!(structure.triangles.len(), 6 * 1104 + 4 * 24);
     assert!(
         place
             .read("views/elastic_20.svg")
@@ -73,12 +74,12 @@ fn modes_that_the_surface_does_not_follow_are_refused_unless_told() {
     let place = Place::new();
     let case = aircraft();
     let case = case.to_str().unwrap();
-    let limit = "structure.transfer_limit=0.1";
+    let limit = "structure.transfer_limit=0.0095";
     let text = place.refused(&["check", case, "--set", limit]);
     for words in [
-        "elastic:18",
-        "18.4 %",
-        "above that: elastic:18 (18.4 %)",
+        "elastic:15",
+        "1.0 % of its largest displacement, 0.9",
+        "above that: elastic:15 (1.0 %)",
         "node",
         "structure.transfer_limit",
     ] {
@@ -91,7 +92,7 @@ fn modes_that_the_surface_does_not_follow_are_refused_unless_told() {
             "--set",
             limit,
             "--set",
-            "structure.modes=[1,16]",
+            "structure.modes=[1,14]",
         ])
         .code(0);
 }
@@ -110,7 +111,7 @@ fn keys_change_hinges_masses_and_frequencies() {
             .code(0),
     );
     assert_eq!(frequency(&said, "elastic:1"), 8.0);
-    assert!(frequency(&said, "elastic:6") < 35.0, "{said}");
+    assert!(frequency(&said, "elastic:13") < 70.0, "{said}");
     let mass = "structure.added_mass=[{name=\"camera\",mass=0.5,position=[0.05,0.0,0.0]}]";
     let said = output(&place.run(&["modes", case, "--set", mass]).code(0));
     assert!(said.contains("rigid body: 18.6138 kg"), "{said}");
