@@ -105,15 +105,18 @@ impl Aircraft {
         setup.solve()
     }
 
-    /// Whether a mode is symmetric, and what part of it is not of its kind.
+    /// Whether a mode is symmetric, and what part of it is not of its kind: of its
+    /// displacements, or of what it turns the triangles by, which Q sees as well. Turning
+    /// is a difference of near displacements, so that the digits of a file show more there.
     fn parity(&self, mode: &SurfaceMode) -> (bool, f64) {
-        let part = |sign: f64| {
-            let other = split(mode, &self.image, sign);
-            other.iter().map(Vec3::norm_squared).sum::<f64>()
-        };
-        let (even, odd) = (part(1.0), part(-1.0));
-        let total = even + odd;
-        (even >= odd, (even.min(odd) / total).sqrt())
+        let parts = [1.0, -1.0].map(|sign| split(mode, &self.image, sign));
+        let [even, odd] = parts.each_ref().map(|part| squares(part));
+        let [even_turn, odd_turn] = parts.each_ref().map(|part| turning(&self.mesh, part));
+        let other = |even: f64, odd: f64| (even.min(odd) / (even + odd)).sqrt();
+        (
+            even >= odd,
+            other(even, odd).max(other(even_turn, odd_turn)),
+        )
     }
 
     /// Numbers of the modes whose name passes.
@@ -312,6 +315,27 @@ fn images(mesh: &TriMesh) -> Result<(Vec<usize>, f64), Fault> {
         worst = worst.max(best.0);
     }
     Ok((image, worst))
+}
+
+fn squares(field: &[Vec3]) -> f64 {
+    field.iter().map(Vec3::norm_squared).sum()
+}
+
+/// Sum over triangles of area times the square of the angle by which displacements turn the
+/// normal, from `δ(n A) = (δe × f + e × δf)/2` without its part along n.
+fn turning(mesh: &TriMesh, field: &[Vec3]) -> f64 {
+    let mut sum = 0.0;
+    for [a, b, c] in mesh.triangles.iter().map(|t| t.map(|v| v as usize)) {
+        let edges = |x: &[Vec3]| [x[b] - x[a], x[c] - x[a]];
+        let ([e, f], [de, df]) = (edges(&mesh.vertices), edges(field));
+        let double = e.cross(&f);
+        let change = de.cross(&f) + e.cross(&df);
+        let area = 0.5 * double.norm();
+        let normal = double / (2.0 * area);
+        let turn = (change - normal * normal.dot(&change)) / (2.0 * area);
+        sum += area * turn.norm_squared();
+    }
+    sum
 }
 
 /// The part of a mode with the given parity.

@@ -16,7 +16,8 @@ use std::path::{Path, PathBuf};
 
 const SEMICHORD: f64 = 0.115;
 const RIGID: usize = 6;
-const ELASTIC: usize = 12;
+/// Up to the modes in which rudders and elevons turn, which have the largest entries of Q.
+const ELASTIC: usize = 14;
 /// Columns y, z, φ, θ, ψ.
 const COLUMNS: std::ops::Range<usize> = 1..6;
 const K: [f64; 6] = [0.02, 0.05, 0.1, 0.3, 0.9, 1.5];
@@ -134,11 +135,11 @@ fn the_incidence_shift_of_the_paper() {
         let size = full.norm_max();
         let one_factorisation = (&one - &full).norm_max() / size;
         let constant_shift = (&shifted - &full).norm_max() / size;
-        // What is left is the wake along x instead of along the stream.
-        assert!(one_factorisation < 0.03 && one_factorisation < 0.3 * constant_shift);
         println!(
             "k = {k}: one factorisation against recomputation {one_factorisation:.1e}, constant shift {constant_shift:.1e}, no shift {:.1e} of max |Q|",
             (&q(&model, k, 2.0) - &full).norm_max() / size
         );
+        // What is left is the wake along x instead of along the stream.
+        assert!(one_factorisation < 0.03 && one_factorisation < 0.3 * constant_shift);
     }
 }

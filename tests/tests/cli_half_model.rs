@@ -541,10 +541,10 @@ fn half_an_aircraft_is_moved_by_its_whole_structure() {
             "[reference]\nsemichord = 0.115\n[mesh]\nfile = \"half.msh\"\nsymmetry = \"y\"\n\
              [wake]\nbody_lines = [\"bodywake_r\"]\n[gaf]\nk = [0.0, 0.1]\n[structure]\n\
              file = \"{0}/modes.frd.gz\"\ngeometry = \"{0}/modes.inp.gz\"\n\
-             other_symmetry = \"leave-out\"\ntransfer_limit = 0.2\n[structure.components]\n\
+             other_symmetry = \"leave-out\"\ntransfer_limit = 0.02\n[structure.components]\n\
              wing_r = [\"WLE\", \"WCAP\", \"WBOX\", \"WTE\"]\nelevon_r = [\"WCS\"]\n\
              winglet_r = [\"LLE\", \"LCAP\", \"LBOX\", \"LTE\"]\nrudder_r = [\"LCS\"]\n\
-             fuselage_r = [\"FUS\", \"FUSZ0\", \"FUSZ1\", \"FUSZ2\", \"FUSZ3\"]\n\
+             fuselage_r = [\"FUS\", \"FUSZ0\", \"FUSZ1\", \"FUSZ2\", \"FUSZ3\", \"FUSN\", \"FUST\"]\n\
              [structure.rigid_body]\n",
             structure.display()
         ),

@@ -226,9 +226,8 @@ fn rigid_motion_and_bending_reach_the_surface() {
             println!("{name}: {field} {everywhere:.1e}, outboard {outboard:.1e}");
         }
         assert!(rigid[0] < 1e-12 && bending[0] < 1e-3 && twist[0] < 1e-3);
-        // In-plane bending has its largest error on the tail cone, where the
-        // structure ends 60 mm before the surface: 1.4e-2 for flat facets too.
-        assert!(in_plane[0] < 2e-2 && in_plane[1] < 2.2e-3);
+        // In-plane bending has its largest error on the body, whose elements are long.
+        assert!(in_plane[0] < 3e-3 && in_plane[1] < 2.2e-3);
     }
 }
 
@@ -349,7 +348,7 @@ fn rigid_modes_of_the_file_are_those_of_the_mass_properties() {
 }
 
 #[test]
-fn webs_ribs_and_springs_are_named_and_left_out() {
+fn what_does_not_carry_the_surface_is_named_and_left_out() {
     let (model, mesh) = (model(), mesh("scaneagle_3k.msh"));
     let (modes, report) = transfer(&model, &mesh, &common::scaneagle_components())
         .expect("structure and mesh fit");
@@ -360,14 +359,9 @@ fn webs_ribs_and_springs_are_named_and_left_out() {
     );
     let left_out = report.left_out.join("\n");
     println!("{left_out}");
-    for set in [
-        "WWEB (34)",
-        "LWEB_P (18)",
-        "RIB (60)",
-        "RIBCS_P (12)",
-        "WCSW (8)",
-        "SPR0 (1)",
-    ] {
+    // Caps go on inside the fuselage; webs, ribs, bulkheads and joints have no displacements
+    // in the file at all.
+    for set in ["WCAP (8 of 72)", "WCAP_P (8 of 72)"] {
         assert!(left_out.contains(set), "{set}");
     }
     for part in &report.components {
@@ -379,13 +373,14 @@ fn webs_ribs_and_springs_are_named_and_left_out() {
     println!("ratio {}, overlap {}", report.size_ratio, report.overlap);
     assert_eq!(report.components.len(), 10);
     assert!((report.size_ratio - 1.0).abs() < 0.01 && report.overlap == 1.0);
-    // The open tail of the structure is 60 mm short of the tail's tip.
-    assert!((report.largest_distance - 0.0605).abs() < 1e-3);
+    // Nowhere farther than from the rear spar at 70 % of the chord to the hinge line at 75 %,
+    // where the elevon begins: 0.2316 m of chord.
+    assert!(report.largest_distance < 0.05 * 0.2316);
     assert!(
         model
             .notes
             .iter()
-            .any(|note| note.starts_with("68 nodes carry no displacements"))
+            .any(|note| note.starts_with("483 nodes carry no displacements"))
     );
 }
 
@@ -436,7 +431,10 @@ fn other_units_and_axes_are_refused() {
     };
     let wrong = load(&wrong).expect("readable");
     match build_transfer(&wrong.result, &mesh, &BTreeMap::new()) {
-        Err(TransferError::Size { ratio, .. }) => assert!((ratio - 1001.3).abs() < 1.0),
+        Err(TransferError::Size { ratio, .. }) => {
+            let report = carried(&mesh, &model()).report;
+            assert!((ratio / report.size_ratio / 1e3 - 1.0).abs() < 1e-9);
+        }
         other => panic!("{:?}", other.map(|transfer| transfer.report)),
     }
     let axes = Axes::from_names(["y", "-x", "z"]).expect("right-handed");

@@ -35,7 +35,7 @@ enum Chore {
     Browser(browser::Browser),
     /// Read the files of a run with NumPy and pyNastran and compare them with its JSON
     Exports(exports::Exports),
-    /// Make the surface of the ScanEagle-like aircraft from its table of dimensions
+    /// Make surface and modes of the ScanEagle-like aircraft from its tables
     #[command(subcommand)]
     Scaneagle(scaneagle::ScanEagle),
     /// Reproduce figures and tables of the paper (IFASD-2009-119, section 5) with the

@@ -45,7 +45,7 @@ pub(crate) fn scaneagle_components() -> BTreeMap<String, Vec<String>> {
         add("elevon", &["WCS"]);
         add("rudder", &["LCS"]);
     }
-    let body = ["FUS", "FUSZ0", "FUSZ1", "FUSZ2", "FUSZ3"];
+    let body = ["FUS", "FUSZ0", "FUSZ1", "FUSZ2", "FUSZ3", "FUSN", "FUST"];
     let both: Vec<String> = body
         .iter()
         .flat_map(|s| [(*s).to_owned(), format!("{s}_P")])

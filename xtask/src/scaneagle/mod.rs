@@ -1,9 +1,10 @@
-//! `cargo xtask scaneagle mesh`: the wetted surface of the ScanEagle-like aircraft, or of
-//! another flying wing, from a table of dimensions.
+//! `cargo xtask scaneagle mesh` and `modes`: wetted surface and structure of the ScanEagle-like
+//! aircraft, or of another flying wing, from tables.
 
 mod body;
 mod params;
 mod plane;
+mod structure;
 mod surface;
 mod wing;
 
@@ -26,6 +27,8 @@ pub(crate) const TABLE: &str = concat!(
 pub(crate) enum ScanEagle {
     /// Write the surface as Gmsh 4.1, with groups for wing, controls, edges
     Mesh(Mesh),
+    /// Make the structure, have CalculiX find its modes, and write them into the case
+    Modes(structure::Modes),
 }
 
 /// Which surface, and where it goes.
@@ -49,6 +52,8 @@ pub(crate) enum ScanEagleError {
     Parameters(#[from] ParameterError),
     #[error(transparent)]
     Surface(#[from] SurfaceError),
+    #[error(transparent)]
+    Modes(#[from] structure::ModesError),
     #[error("there is no [size.{wanted}]; there are {there}")]
     Size { wanted: String, there: String },
     #[error("{}: {source}", path.display())]
@@ -61,7 +66,16 @@ pub(crate) enum ScanEagleError {
 impl ScanEagle {
     /// Makes it; a sentence about it.
     pub(crate) fn run(&self) -> Result<String, ScanEagleError> {
-        let Self::Mesh(mesh) = self;
+        match self {
+            Self::Mesh(mesh) => mesh.run(),
+            Self::Modes(modes) => Ok(modes.run()?),
+        }
+    }
+}
+
+impl Mesh {
+    fn run(&self) -> Result<String, ScanEagleError> {
+        let mesh = self;
         let parameters = Parameters::read(&mesh.params)?;
         let size = parameters.size.get(&mesh.size).copied();
         let size = size.ok_or_else(|| ScanEagleError::Size {
