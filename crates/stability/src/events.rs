@@ -44,6 +44,22 @@ pub(crate) fn events(tracks: &[Track], stations: &[Station<'_>]) -> Vec<Event> {
     found
 }
 
+/// Tracks that begin as what a growing motion turns into: nothing begins to grow there.
+pub(crate) fn from_growth(tracks: &[Track], events: &[Event]) -> Vec<usize> {
+    let grows = |number: usize| {
+        let last = tracks[number].roots.last();
+        last.is_some_and(|root| root.p.re > 0.0)
+    };
+    events
+        .iter()
+        .flat_map(|event| match event.turn {
+            Turn::Split if grows(event.pair) => event.real.clone(),
+            Turn::Join if event.real.iter().all(|&real| grows(real)) => vec![event.pair],
+            _ => Vec::new(),
+        })
+        .collect()
+}
+
 /// Ends of tracks at one speed that have no partner at the other.
 fn loose(tracks: &[Track], at: usize, is_end: bool, is_real: bool) -> Vec<(usize, &Eigenpair)> {
     tracks

@@ -12,7 +12,7 @@ use crate::continuation::Continuation;
 use crate::count::{Census, Claim};
 use crate::crossing::{Found, Resolver, before_the_start, locate, sign_changes};
 use crate::eigenpair::Eigenpair;
-use crate::events::events;
+use crate::events::{events, from_growth};
 use crate::flight_modes::FlightMode;
 use crate::gaf::GafTable;
 use crate::hump::hidden_crossings;
@@ -511,8 +511,9 @@ impl Run<'_> {
             })
             .collect();
         let tracks = follow(&stations);
-        let found = crossings(&tracks, resolver);
         let events = events(&tracks, &stations);
+        let grown = from_growth(&tracks, &events);
+        let found = crossings(&tracks, &grown, resolver);
         let reporter = Reporter::new(self.sweep, self.points, self.reduced, &tracks);
         let mut result = reporter.report(&found, &events, resolver);
         result.zero_roots.clone_from(&solved.zeros);
@@ -522,7 +523,7 @@ impl Run<'_> {
     }
 }
 
-fn crossings(tracks: &[Track], resolver: &dyn Resolver) -> Vec<Found> {
+fn crossings(tracks: &[Track], grown: &[usize], resolver: &dyn Resolver) -> Vec<Found> {
     let tangents = resolver.tangents(tracks);
     tracks
         .par_iter()
@@ -530,7 +531,9 @@ fn crossings(tracks: &[Track], resolver: &dyn Resolver) -> Vec<Found> {
         .enumerate()
         .flat_map_iter(|(number, (track, tangents))| {
             let mut brackets = sign_changes(number, track);
-            brackets.extend(before_the_start(number, track, resolver));
+            if !grown.contains(&number) {
+                brackets.extend(before_the_start(number, track, resolver));
+            }
             brackets.extend(hidden_crossings(number, track, tangents, resolver));
             brackets
                 .into_iter()
