@@ -394,10 +394,10 @@ impl Bracket {
 
 /// Places below the first sample where $h$ is looked at: slow rigid motions
 /// have several roots there.
-const LOW_PLACES: i32 = 5;
+const LOW_PLACES: i32 = 10;
 
 /// Each is this much lower than the one before.
-const LOW_RATIO: f64 = 4.0;
+const LOW_RATIO: f64 = 2.0;
 
 /// Zero, places below the first sample, and the samples.
 fn scan_grid(samples: &[f64]) -> Vec<f64> {

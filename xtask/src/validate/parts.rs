@@ -37,11 +37,11 @@ const STEADY: Goals = Goals {
     kutta: 0.01,
 };
 
-/// Cells of the fine wings: the first as long as the nose radius of a 2 % section.
+/// Cells of the fine wings: the first about as long as the nose radius of a 3 % section.
 const WING: Cells = Cells {
     chord: 48,
     half_span: 20,
-    nose: 0.5,
+    nose: 0.4,
 };
 
 /// Cells of the fine wings with thickness.
