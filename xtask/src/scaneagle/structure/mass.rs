@@ -59,12 +59,9 @@ pub(super) fn weight(mesh: &ShellMesh, cells: &[usize], thickness: f64) -> Weigh
             .iter()
             .map(|node| mesh.nodes[node - 1])
             .collect();
-        let (points, shape): (Vec<[f64; 3]>, fn(f64, f64) -> Vec<[f64; 3]>) =
-            if nodes.len() == 8 {
-                (square(), eight)
-            } else {
-                (triangle(), six)
-            };
+        let eight_nodes = nodes.len() == 8;
+        let points = if eight_nodes { square() } else { triangle() };
+        let shape: Shape = if eight_nodes { eight } else { six };
         for [r, s, factor] in points {
             let mut sums = [Vec3::zeros(); 3];
             for (node, values) in nodes.iter().zip(shape(r, s)) {
@@ -83,6 +80,9 @@ pub(super) fn weight(mesh: &ShellMesh, cells: &[usize], thickness: f64) -> Weigh
     }
     sum
 }
+
+/// Shape functions and derivatives of every node at a point.
+type Shape = fn(f64, f64) -> Vec<[f64; 3]>;
 
 /// Points of Gauss on the square −1 … 1 with their weights.
 fn square() -> Vec<[f64; 3]> {

@@ -81,7 +81,7 @@ impl ShellMesh {
         for port in [false, true] {
             let numbers: Vec<Vec<Option<usize>>> = (0..u.len())
                 .map(|i| {
-                    let used = |j: &usize| i % 2 == 0 || j % 2 == 0;
+                    let used = |j: &usize| i.is_multiple_of(2) || j.is_multiple_of(2);
                     (0..v.len())
                         .map(|j| used(&j).then(|| self.node(side(port, surface(u[i], v[j])))))
                         .collect()

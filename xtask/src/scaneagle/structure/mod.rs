@@ -16,6 +16,7 @@ mod shells;
 mod solver;
 mod table;
 
+use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -88,8 +89,7 @@ impl Modes {
         if self.inp_only {
             let path = self.out.join(format!("{JOB}.inp"));
             std::fs::write(&path, &input).map_err(file(path.clone()))?;
-            said.push_str(&format!("wrote {}", path.display()));
-            return Ok(said);
+            return Ok(format!("{said}wrote {}", path.display()));
         }
         let job = tempfile::tempdir().map_err(file(std::env::temp_dir()))?;
         solver::solve(&self.ccx, job.path(), &input)?;
@@ -101,7 +101,7 @@ impl Modes {
         let judged = judge::judge(&model, &found).map_err(ModesError::Judged)?;
         said.push_str(&report::modes(&judged, &found));
         for (path, bytes) in keep::keep(job.path(), &input, &self.out)? {
-            said.push_str(&format!("wrote {}, {bytes} bytes\n", path.display()));
+            let _ = writeln!(said, "wrote {}, {bytes} bytes", path.display());
         }
         Ok(said.trim_end().to_owned())
     }

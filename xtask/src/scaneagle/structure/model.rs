@@ -89,7 +89,7 @@ fn laminates(table: &Table, mesh: &ShellMesh) -> BTreeMap<String, Laminate> {
             laminates.insert(format!("{letter}{ending}"), plate(layers));
         }
     }
-    let shell = plate(&table.fuselage.shell);
+    let shell = plate(&table.fuselage.skin);
     for set in ["FUS", "FUSN", "FUST"] {
         laminates.insert(set.to_owned(), shell);
     }

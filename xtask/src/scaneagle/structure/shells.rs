@@ -31,14 +31,13 @@ fn lifting(
     let name = |ending: &str| format!("{}{ending}", control.letter);
     let from_body = |s: &&f64| **s > places.side_of_body - SAME;
     let outside: Vec<f64> = stations.iter().filter(from_body).copied().collect();
-    let [front, cap, rear] = [places.front_spar, places.cap_end, places.rear_spar];
+    let [front, rear] = [places.front_spar, places.rear_spar];
     let [caps, boxes] = chords(places);
     // Finer towards the leading edge, where place = front u².
     let round = [-1.0, -0.5, 0.0, 0.5, 1.0];
     mesh.patch(&name("LE"), (&round, &outside), false, |u, s| {
         wing.point(front * u * u, if u == 0.0 { 0.0 } else { u.signum() }, s)
     });
-    debug_assert!(front < cap && cap < rear);
     let trailing = [rear, f64::midpoint(rear, 1.0), 1.0];
     for face in [1.0, -1.0] {
         let skin =
@@ -160,24 +159,25 @@ fn fuselage(mesh: &mut ShellMesh, frame: &Frame<'_>, table: &Table) {
             fladder_mesh::Vec3::new(*x, part * rim.y, part * rim.z)
         });
     }
-    // Half the radius of the ring, then the tip.
-    let nose = |part: f64| {
-        let wanted = part * body.radius(shell.nose);
-        root(0.0, shell.nose, |x| body.radius(x) - wanted)
-    };
-    let tail = |part: f64| {
-        let wanted = part * body.radius(shell.tail);
-        root(shell.tail, body.length(), |x| wanted - body.radius(x))
-    };
-    let tip = |part: f64, x: f64, end: f64, ring: f64| match part {
-        p if p == 0.0 => end,
-        p if p == 1.0 => ring,
-        _ => x,
+    // Half-way to the tip the radius is half that of the ring.
+    let (nose, tail) = (body.radius(shell.nose) / 2.0, body.radius(shell.tail) / 2.0);
+    let half = [
+        root(0.0, shell.nose, |x| body.radius(x) - nose),
+        root(shell.tail, body.length(), |x| tail - body.radius(x)),
+    ];
+    let place = |part: f64, [tip, half, ring]: [f64; 3]| {
+        if part == 0.0 {
+            tip
+        } else if part == 1.0 {
+            ring
+        } else {
+            half
+        }
     };
     mesh.fan("FUSN", &frame.angles, |part, angle| {
-        body.point(tip(part, nose(part), 0.0, shell.nose), angle)
+        body.point(place(part, [0.0, half[0], shell.nose]), angle)
     });
     mesh.fan("FUST", &frame.angles, |part, angle| {
-        body.point(tip(part, tail(part), body.length(), shell.tail), angle)
+        body.point(place(part, [body.length(), half[1], shell.tail]), angle)
     });
 }

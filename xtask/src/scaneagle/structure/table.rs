@@ -96,7 +96,8 @@ pub(super) struct Balance {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Shell {
-    pub(super) shell: Layers,
+    #[serde(rename = "shell")]
+    pub(super) skin: Layers,
     pub(super) bulkhead: Layers,
     pub(super) bulkheads: Vec<f64>,
     pub(super) nose: f64,
@@ -248,7 +249,7 @@ impl Table {
                 plates.all().map(named)
             })
             .chain([
-                ("fuselage.shell".to_owned(), &body.shell),
+                ("fuselage.shell".to_owned(), &body.skin),
                 ("fuselage.bulkhead".to_owned(), &body.bulkhead),
             ]);
         for (name, layers) in plates {

@@ -136,7 +136,7 @@ fn arc_error(half_angle: f64) -> f64 {
     let (half, rise) = (sin(half_angle), 1.0 - cos(half_angle));
     let steps = 1000;
     let length: f64 = (0..steps)
-        .map(|i| (i as f64 + 0.5) / f64::from(steps))
+        .map(|i| (f64::from(i) + 0.5) / f64::from(steps))
         .map(|part| (half * half + 4.0 * rise * rise * part * part).sqrt() / f64::from(steps))
         .sum();
     1.0 - length / half_angle
