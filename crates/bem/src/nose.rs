@@ -28,7 +28,7 @@ pub(crate) fn unresolved(problem: &Problem<'_>) -> Option<String> {
     let trailing: f64 = problem
         .trailing_edges
         .iter()
-        .flat_map(|edge| edge.edges())
+        .flat_map(fladder_mesh::TrailingEdge::edges)
         .map(length)
         .sum();
     let adjacency = Adjacency::new(mesh.vertices.len(), &mesh.triangles);

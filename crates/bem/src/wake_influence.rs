@@ -341,14 +341,13 @@ impl WakeInfluence<'_> {
                         if progress.cancelled() {
                             return sum.rows;
                         }
-                        let (out, tile) = match cluster.receiver_of(block) {
-                            Some(receiver) => (&mut sum.far, working.far_tile(receiver, block)),
-                            None => {
-                                let tile = self.tile(sheet, b, cluster, own, working);
-                                let (rows, places) = (cluster.rows.len(), block.places());
-                                let tile = MatRef::from_row_major_slice(tile, rows, places);
-                                (&mut sum.rows, tile)
-                            }
+                        let (out, tile) = if let Some(receiver) = cluster.receiver_of(block) {
+                            (&mut sum.far, working.far_tile(receiver, block))
+                        } else {
+                            let tile = self.tile(sheet, b, cluster, own, working);
+                            let (rows, places) = (cluster.rows.len(), block.places());
+                            let tile = MatRef::from_row_major_slice(tile, rows, places);
+                            (&mut sum.rows, tile)
                         };
                         for (place, &slot) in block.columns.iter().enumerate() {
                             let slot = slot as usize;

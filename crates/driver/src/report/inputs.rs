@@ -22,7 +22,11 @@ pub(crate) fn inputs(file: &CaseFile, overrides: &[String]) -> Vec<(String, Stri
             named.extend(path.iter().map(|path| (key, file.resolve(path))));
         }
     }
-    let forces = case.gaf.file.iter().flat_map(|files| files.as_slice());
+    let forces = case
+        .gaf
+        .file
+        .iter()
+        .flat_map(crate::case::OneOrMany::as_slice);
     named.extend(forces.map(|path| ("gaf.file", file.resolve(path))));
     let hashed = named
         .into_iter()
