@@ -74,6 +74,19 @@ fn files_for_other_programs_hold_the_same_forces() {
     assert!(values.iter().all(|value| value.is_finite()));
     assert_eq!((shape[0], shape[1]), (3, shape[2]));
     assert_eq!(shape[1] % 2, 0);
+    // M, C and K at every point; as many states as modes, rates and lags.
+    let (masses, _) = array::<f64>(&place, "out/state_space.npz", "M");
+    for name in ["C", "K"] {
+        let (others, values) = array::<f64>(&place, "out/state_space.npz", name);
+        assert_eq!(others, masses);
+        assert!(values.iter().all(|value| value.is_finite()));
+    }
+    assert_eq!((masses[0], masses[1]), (shape[0], masses[2]));
+    let (poles, values) = array::<Complex64>(&place, "out/state_space.npz", "poles");
+    assert!(values.iter().all(|pole| pole.re < 0.0 && pole.im >= 0.0));
+    let lags: u64 = values.iter().map(|pole| 1 + u64::from(pole.im > 0.0)).sum();
+    assert_eq!(poles[0], values.len() as u64);
+    assert_eq!(shape[1], masses[1] * (2 + lags));
 
     let summary = place.read("out/flutter_summary.f06");
     assert_eq!(

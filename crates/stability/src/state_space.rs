@@ -20,6 +20,34 @@ pub struct StateMatrix {
     pub density: f64,
     /// $A$ of $\dot x = Ax$ in 1/s, $x = (\xi, (b/U)\dot\xi, w_1, …)$.
     pub matrix: Mat<f64>,
+    /// $M$.
+    pub mass: Mat<f64>,
+    /// $C$ of this flight condition, without the air, without hysteretic damping.
+    pub damping: Mat<f64>,
+    /// $K$, with gravity where it acts.
+    pub stiffness: Mat<f64>,
+    /// Poles $a_j$ of the rational model, of $p$: on the real axis and above it.
+    pub poles: Vec<c64>,
+}
+
+impl StateMatrix {
+    /// Names of the states for modes with these names: `NAME`, `rate of NAME`, and for each
+    /// pole `lag J of NAME`, for a pair `lag J re of NAME`, `lag J im of NAME`.
+    pub fn states(&self, modes: &[String]) -> Vec<String> {
+        let mut prefixes = vec![String::new(), "rate of ".to_owned()];
+        for (number, pole) in (1..).zip(&self.poles) {
+            if pole.im > 0.0 {
+                prefixes.push(format!("lag {number} re of "));
+                prefixes.push(format!("lag {number} im of "));
+            } else {
+                prefixes.push(format!("lag {number} of "));
+            }
+        }
+        prefixes
+            .iter()
+            .flat_map(|prefix| modes.iter().map(move |mode| format!("{prefix}{mode}")))
+            .collect()
+    }
 }
 
 /// Every root of the rational model with $\operatorname{Im}p\ge0$, without

@@ -274,12 +274,19 @@ impl Sweep<'_> {
         let point = self.schedule.at(parameter);
         let reduced = self.reduced(&point);
         let in_p = state_matrix(&reduced, fit);
+        let scaled = |matrix: &Mat<f64>, factor: f64| {
+            Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+                matrix[(i, j)] * factor
+            })
+        };
         StateMatrix {
             airspeed: point.airspeed,
             density: point.density,
-            matrix: Mat::from_fn(in_p.nrows(), in_p.ncols(), |i, j| {
-                in_p[(i, j)] * reduced.rate
-            }),
+            matrix: scaled(&in_p, reduced.rate),
+            mass: scaled(&reduced.mass, 1.0 / (reduced.rate * reduced.rate)),
+            damping: scaled(&reduced.damping, 1.0 / reduced.rate),
+            stiffness: reduced.stiffness.clone(),
+            poles: fit.poles(),
         }
     }
 

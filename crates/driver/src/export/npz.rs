@@ -110,8 +110,12 @@ pub(crate) fn forces(path: &Path, document: &Document) -> Result<Vec<u8>, Failur
     written().map_err(|error| Failure::io("write the archive", path, &error))
 }
 
-/// State-space models: `speed`, `density`, `modes`, `lags`, and `A[speed, row, column]` with
-/// $\dot x = Ax$, $x = (\xi, (b/U)\dot\xi, w_1, …)$.
+/// A matrix of a model.
+type Part = fn(&StateMatrix) -> &Mat<f64>;
+
+/// State-space models: `speed`, `density`, `modes`, `states`, `lags`, `poles`, and
+/// `A[speed, row, column]` with $\dot x = Ax$, $x = (\xi, (b/U)\dot\xi, w_1, …)$; `M`, `C` and
+/// `K` of the structure alike.
 pub(crate) fn states(
     path: &Path,
     modes: &[String],
@@ -130,8 +134,22 @@ pub(crate) fn states(
         archive.add_texts("modes", modes)?;
         let lags = size / modes.len().max(1);
         archive.add("lags", &[], [lags.saturating_sub(2) as i64])?;
-        let entries = states.iter().flat_map(|state| rows(&state.matrix));
-        archive.add("A", &[count, size as u64, size as u64], entries)?;
+        if let Some(first) = states.first() {
+            archive.add_texts("states", &first.states(modes))?;
+            let poles = first.poles.iter().copied();
+            archive.add("poles", &[first.poles.len() as u64], poles)?;
+        }
+        let kinds: [(&str, Part); 4] = [
+            ("A", |state| &state.matrix),
+            ("M", |state| &state.mass),
+            ("C", |state| &state.damping),
+            ("K", |state| &state.stiffness),
+        ];
+        for (name, matrix) in kinds {
+            let order = states.first().map_or(0, |state| matrix(state).nrows()) as u64;
+            let entries = states.iter().flat_map(|state| rows(matrix(state)));
+            archive.add(name, &[count, order, order], entries)?;
+        }
         archive.finish()
     };
     written().map_err(|error| Failure::io("write the archive", path, &error))
