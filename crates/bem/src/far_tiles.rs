@@ -143,50 +143,10 @@ impl Default for FarScratch {
 }
 
 impl FarScratch {
-    /// Tested influence densities of a block at the nodes ξ: rows of the cluster ×
-    /// [`FarBlock::columns`]; without weights and without e^{−sξ}.
+    /// Tested influence densities of a block at the nodes ξ, without weights and without
+    /// e^{−sξ}: rows of the cluster × [`FarBlock::columns`]; with factors, one a node, their
+    /// sums over the nodes: rows × (streamlines × 2).
     pub(crate) fn tile(
-        &mut self,
-        cluster: &TestCluster,
-        block: &FarBlock,
-        nodes: &[c64],
-    ) -> MatRef<'_, f64> {
-        self.fill(cluster, block, nodes, None)
-    }
-
-    /// The same summed over the nodes with a factor each: rows × (streamlines × 2).
-    pub(crate) fn summed_tile(
-        &mut self,
-        cluster: &TestCluster,
-        block: &FarBlock,
-        nodes: &[c64],
-        factors: &[c64],
-    ) -> MatRef<'_, f64> {
-        self.fill(cluster, block, nodes, Some(factors))
-    }
-
-    /// [`Self::tile`] at the chosen points of a receiver instead of at rows.
-    pub(crate) fn far_tile(
-        &mut self,
-        receiver: &Receiver,
-        block: &FarBlock,
-        nodes: &[c64],
-    ) -> MatRef<'_, f64> {
-        self.fill_far(receiver, block, nodes, None)
-    }
-
-    /// [`Self::summed_tile`] at the chosen points of a receiver instead of at rows.
-    pub(crate) fn summed_far_tile(
-        &mut self,
-        receiver: &Receiver,
-        block: &FarBlock,
-        nodes: &[c64],
-        factors: &[c64],
-    ) -> MatRef<'_, f64> {
-        self.fill_far(receiver, block, nodes, Some(factors))
-    }
-
-    fn fill(
         &mut self,
         cluster: &TestCluster,
         block: &FarBlock,
@@ -212,7 +172,8 @@ impl FarScratch {
         MatRef::from_row_major_slice(&self.tile, rows, columns)
     }
 
-    fn fill_far(
+    /// [`Self::tile`] at the chosen points of a receiver instead of at rows.
+    pub(crate) fn far_tile(
         &mut self,
         receiver: &Receiver,
         block: &FarBlock,

@@ -10,17 +10,16 @@
 //! of steps whatever the mesh. All right-hand sides are multiplied together, in chunks that
 //! do not depend on the number of threads.
 
+use crate::assembly::PARTS_AT_ONCE;
 use crate::blocked_lu::BlockedLu;
 use crate::dense::BodyOperator;
 use crate::error::BemError;
 use crate::galerkin::Galerkin;
+use crate::influence::{Influence, Totals, Working};
 use crate::krylov::solve_block;
-use crate::lanes::WIDTH;
-use crate::near_field::POINTS;
 use crate::progress::Progress;
-use crate::received::{Placed, Received, columns_of, received};
+use crate::received::{Received, received};
 use crate::source_columns::SourceColumns;
-use crate::tiles::{PointValues, Tile, TileScratch, free_terms};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use rayon::prelude::*;
@@ -56,15 +55,15 @@ pub(crate) struct HierarchicalOperator {
 #[derive(Debug)]
 struct StoredPart {
     rows: Vec<u32>,
-    near: Block,
-    far: Block,
+    near: Entries,
+    far: Entries,
     /// T W: rows × chosen points, which are the far block's rows.
     tested: Mat<f32>,
 }
 
-/// Entries over some columns.
+/// Entries over some vertices.
 #[derive(Debug)]
-struct Block {
+struct Entries {
     columns: Vec<u32>,
     values: Mat<f32>,
 }
@@ -76,29 +75,24 @@ pub(crate) struct Assembled {
     pub(crate) free_terms: Vec<f64>,
 }
 
-/// What the evaluation of a part gives.
-struct Evaluated {
-    stored: StoredPart,
-    /// S σ at the rows.
-    sources: Mat<f64>,
-    free: Vec<PointValues>,
-}
-
-impl Block {
-    fn zeros(rows: usize, blocks: &[Placed<'_>]) -> Self {
-        let columns = columns_of(blocks);
+impl StoredPart {
+    fn new(part: &Received<'_>, influence: Influence) -> Self {
+        let Influence { near, far, .. } = influence;
+        let tested = part.receiver.filter(|_| !far.columns.is_empty());
         Self {
-            values: Mat::zeros(rows, columns.len()),
-            columns,
+            rows: part.rows.to_vec(),
+            near: Entries {
+                values: single(near.values.transpose()),
+                columns: near.columns,
+            },
+            far: Entries {
+                values: single(far.values.as_ref()),
+                columns: far.columns,
+            },
+            tested: tested.map_or_else(Mat::new, |receiver| single(receiver.tested.as_ref())),
         }
     }
 
-    fn place(&self, column: u32) -> usize {
-        self.columns.partition_point(|x| *x < column)
-    }
-}
-
-impl StoredPart {
     /// Y += A X over these rows and columns, or with their transpose.
     fn multiply(&self, x: &Mat<f32>, y: &mut Mat<f32>, transposed: bool) {
         if transposed {
@@ -121,6 +115,10 @@ impl StoredPart {
             scatter(&rows, &self.rows, y);
         }
     }
+}
+
+fn single(matrix: MatRef<'_, f64>) -> Mat<f32> {
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)] as f32)
 }
 
 fn product(a: MatRef<'_, f32>, b: MatRef<'_, f32>) -> Mat<f32> {
@@ -151,77 +149,6 @@ fn scatter(values: &Mat<f32>, rows: &[u32], out: &mut Mat<f32>) {
     }
 }
 
-impl Evaluated {
-    fn new(
-        part: &Received<'_>,
-        galerkin: &Galerkin,
-        sources: &SourceColumns,
-        (scratch, tile): &mut (TileScratch, Tile),
-    ) -> Self {
-        let height = part.rows.len();
-        let mut near = Block::zeros(height, &part.near);
-        let mut near_sources = sources.zeros(height);
-        let mut free = Vec::new();
-        if let Some((_, cluster)) = part.cluster {
-            let mut changes = vec![[[0.0; WIDTH]; 3]; cluster.groups.len()];
-            for Placed { block, first } in &part.near {
-                scratch.fill(galerkin, cluster, block, true, tile, &mut changes);
-                for (place, &v) in block.columns.iter().enumerate() {
-                    let column = near.place(v);
-                    for r in 0..height {
-                        let value = tile.doublets[r * block.places() + place];
-                        near.values[(r, column)] -= value as f32;
-                    }
-                }
-                sources.add_by_rows(*first, &tile.sources, &mut near_sources);
-            }
-            free = changes.iter().map(free_terms).collect();
-            for (group, free) in cluster.groups.iter().zip(&free) {
-                for (lane, &t) in group.triangles.iter().enumerate() {
-                    for (j, &v) in galerkin.triangles[t as usize].iter().enumerate() {
-                        let column = near.place(v);
-                        for (weights, rows) in group.weights.iter().zip(&group.rows) {
-                            let sum: f64 = (0..3)
-                                .map(|q| weights[q][lane] * free[q][lane] * POINTS[q][j])
-                                .sum();
-                            near.values[(rows[lane] as usize, column)] += sum as f32;
-                        }
-                    }
-                }
-            }
-        }
-        let mut sum = sources.in_order(&near_sources);
-        let (mut far, mut tested) = (Block::zeros(0, &[]), Mat::new());
-        if let Some(receiver) = part.receiver.filter(|_| !part.far.is_empty()) {
-            let width = receiver.width();
-            far = Block::zeros(width, &part.far);
-            let mut far_sources = sources.zeros(width);
-            for Placed { block, first } in &part.far {
-                scratch.fill_far(receiver, block, true, tile);
-                for (&v, values) in block.columns.iter().zip(tile.doublets.chunks(width)) {
-                    let column = far.place(v);
-                    for (k, value) in values.iter().enumerate() {
-                        far.values[(k, column)] -= *value as f32;
-                    }
-                }
-                sources.add_by_columns(*first, &tile.sources, &mut far_sources);
-            }
-            sum += &receiver.tested * sources.in_order(&far_sources);
-            tested = Mat::from_fn(height, width, |i, k| receiver.tested[(i, k)] as f32);
-        }
-        Self {
-            stored: StoredPart {
-                rows: part.rows.to_vec(),
-                near,
-                far,
-                tested,
-            },
-            sources: sum,
-            free,
-        }
-    }
-}
-
 impl HierarchicalOperator {
     /// Evaluates everything; `sources` holds σ at triangle corners, row 3 t + corner.
     pub(crate) fn assemble(
@@ -234,42 +161,30 @@ impl HierarchicalOperator {
         let all = received(galerkin);
         let stage = "assembling body influences";
         progress.stage(stage, all.len() as u64);
-        let evaluated: Vec<Evaluated> = all
-            .par_iter()
-            .map_init(Default::default, |working, part| {
-                if progress.cancelled() {
-                    return Err(BemError::Interrupted { stage });
-                }
-                let evaluated = Evaluated::new(part, galerkin, &sources, working);
-                progress.advance(1);
-                Ok(evaluated)
-            })
-            .collect::<Result<_, _>>()?;
-        let mut right_hand_sides = Mat::zeros(galerkin.n_vertices, sources.len());
-        let mut free = vec![0.0; 3 * galerkin.n_triangles()];
+        let mut totals = Totals::new(galerkin, &sources);
         let mut parts = Vec::with_capacity(all.len());
-        for (part, evaluated) in all.iter().zip(evaluated) {
-            for j in 0..sources.len() {
-                for (i, &v) in part.rows.iter().enumerate() {
-                    right_hand_sides[(v as usize, j)] -= evaluated.sources[(i, j)];
-                }
+        for batch in all.chunks(PARTS_AT_ONCE) {
+            if progress.cancelled() {
+                return Err(BemError::Interrupted { stage });
             }
-            if let Some((_, cluster)) = part.cluster {
-                for (group, values) in cluster.groups.iter().zip(&evaluated.free) {
-                    for (lane, &t) in group.triangles.iter().enumerate() {
-                        for (q, values) in values.iter().enumerate() {
-                            free[3 * t as usize + q] = values[lane];
-                        }
-                    }
-                }
+            let influences: Vec<Influence> = batch
+                .par_iter()
+                .map_init(Working::default, |working, part| {
+                    let influence = Influence::new(part, galerkin, &sources, working);
+                    progress.advance(1);
+                    influence
+                })
+                .collect();
+            for (part, influence) in batch.iter().zip(influences) {
+                totals.add(part, &influence);
+                parts.push(StoredPart::new(part, influence));
             }
-            parts.push(evaluated.stored);
         }
         let constrained: Vec<usize> = galerkin.constrained().collect();
         let clusters: Vec<&StoredPart> = all
             .iter()
             .zip(&parts)
-            .filter_map(|(part, stored)| part.cluster.map(|_| stored))
+            .filter_map(|(part, stored)| part.cluster.and(Some(stored)))
             .collect();
         let diagonal = diagonal_factors(&clusters, galerkin.n_vertices, &constrained);
         Ok(Assembled {
@@ -280,8 +195,8 @@ impl HierarchicalOperator {
                 diagonal,
                 tolerance,
             },
-            right_hand_sides,
-            free_terms: free,
+            right_hand_sides: totals.right_hand_sides,
+            free_terms: totals.free_terms,
         })
     }
 

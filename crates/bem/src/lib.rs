@@ -20,7 +20,7 @@
 //! | `lanes`, `panel_block`, `ordering`, `tiles` | eight points at once, blocks of close panels, test triangles |
 //! | `source_columns` | products with source strengths |
 //! | `skeleton`, `receiver`, `regions`, `received` | few points at which far influences are known |
-//! | `galerkin`, `near_field` | the equations |
+//! | `galerkin`, `near_field`, `influence`, `assembly` | the equations |
 //! | `dense`, `blocked_lu` | their factorisation |
 //! | `hierarchical`, `krylov` | the same for more unknowns than a matrix can hold |
 //! | `image` | half models |
@@ -34,6 +34,7 @@
 //! Nothing here knows about files, clocks or terminals.
 
 mod adjacency;
+mod assembly;
 mod blocked_lu;
 mod blocks;
 mod body_node;
@@ -53,6 +54,7 @@ mod galerkin;
 mod guards;
 mod hierarchical;
 mod image;
+mod influence;
 mod krylov;
 mod lanes;
 mod near_field;

@@ -20,7 +20,7 @@ pub(crate) struct Received<'a> {
     /// Test functions, ascending.
     pub(crate) rows: &'a [u32],
     /// A cluster's test triangles; none of a region, which is far from all of its blocks.
-    pub(crate) cluster: Option<(usize, &'a TestCluster)>,
+    pub(crate) cluster: Option<&'a TestCluster>,
     pub(crate) receiver: Option<&'a Receiver>,
     pub(crate) far: Vec<Placed<'a>>,
     pub(crate) near: Vec<Placed<'a>>,
@@ -32,8 +32,8 @@ pub(crate) fn received(galerkin: &Galerkin) -> Vec<Received<'_>> {
     let mut all: Vec<Received<'_>> = regions
         .iter()
         .map(|region| Received::new(&region.rows, None, Some(&region.receiver)))
-        .chain(galerkin.clusters.iter().enumerate().map(|(c, cluster)| {
-            Received::new(&cluster.rows, Some((c, cluster)), cluster.receiver.as_ref())
+        .chain(galerkin.clusters.iter().map(|cluster| {
+            Received::new(&cluster.rows, Some(cluster), cluster.receiver.as_ref())
         }))
         .collect();
     let mut first = 0;
@@ -60,7 +60,7 @@ pub(crate) fn received(galerkin: &Galerkin) -> Vec<Received<'_>> {
 impl<'a> Received<'a> {
     fn new(
         rows: &'a [u32],
-        cluster: Option<(usize, &'a TestCluster)>,
+        cluster: Option<&'a TestCluster>,
         receiver: Option<&'a Receiver>,
     ) -> Self {
         Self {

@@ -1,9 +1,9 @@
 //! From a surface and its modes to the transfer model.
 
+use crate::assembly::{PARTS_AT_ONCE, STRIP, STRIPS_AT_ONCE};
 use crate::cut::CutSurface;
 use crate::dense::{BodyOperator, Solver};
 use crate::error::BemError;
-use crate::galerkin::CLUSTERS_AT_ONCE;
 use crate::image::Image;
 use crate::onset::OnsetBasis;
 use crate::prepare::{Prepared, concatenate};
@@ -174,8 +174,8 @@ const SECONDS_OF_ITERATION: f64 = 6e-7;
 /// A thread's Krylov spaces, by n.
 const KRYLOV_BYTES: f64 = 32.0 * 32.0 * 8.0;
 
-/// Rows of a cluster of test triangles and its chosen points, about.
-const ROWS_OF_A_CLUSTER: f64 = 340.0;
+/// Chosen points of a region or cluster, about.
+const CHOSEN: usize = 170;
 
 /// Lays out the wake and counts.
 ///
@@ -225,7 +225,8 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
             operators * growth * (SECONDS_OF_COMPRESSION + SECONDS_OF_ITERATION * solved),
         ),
     };
-    let batch = CLUSTERS_AT_ONCE as f64 * ROWS_OF_A_CLUSTER * n * 8.0;
+    let held = PARTS_AT_ONCE * CHOSEN + STRIPS_AT_ONCE * STRIP;
+    let batch = held as f64 * n * 8.0;
     let sources = 6.0 * sizes.triangles as f64 * ((1 + onsets) * modes) as f64 * 8.0;
     let columns = wake.slots.len() as f64 + 3.0 * sizes.wake_streamlines as f64 * nodes;
     let is_dense = !matches!(problem.solver, Solver::Hierarchical { .. });

@@ -165,11 +165,12 @@ impl WakeInfluence<'_> {
                         let (left, tile) = match self.target(part, is_far) {
                             Target::Points(receiver) => (
                                 lefts.far(part),
-                                scratch.far_tile(receiver, block, &path.nodes),
+                                scratch.far_tile(receiver, block, &path.nodes, None),
                             ),
-                            Target::Rows(c, cluster) => {
-                                (&lefts.rows[c], scratch.tile(cluster, block, &path.nodes))
-                            }
+                            Target::Rows(c, cluster) => (
+                                &lefts.rows[c],
+                                scratch.tile(cluster, block, &path.nodes, None),
+                            ),
                         };
                         matmul(&mut sum, Accum::Add, left, tile, 1.0, Par::Seq);
                     }
@@ -223,11 +224,11 @@ impl WakeInfluence<'_> {
                     {
                         Some(receiver) => (
                             &mut sum.far,
-                            scratch.summed_far_tile(receiver, block, &path.nodes, &decays),
+                            scratch.far_tile(receiver, block, &path.nodes, Some(&decays)),
                         ),
                         None => (
                             &mut sum.rows,
-                            scratch.summed_tile(cluster, block, &path.nodes, &decays),
+                            scratch.tile(cluster, block, &path.nodes, Some(&decays)),
                         ),
                     };
                     for (i, &line) in block.lines.iter().enumerate() {
