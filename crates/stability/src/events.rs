@@ -119,3 +119,55 @@ fn at_step(tracks: &[Track], stations: &[Station<'_>], after: usize, turn: Turn)
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use faer::c64;
+
+    fn track(first: usize, roots: &[(f64, f64)]) -> Track {
+        let root = |&(g, k): &(f64, f64)| Eigenpair {
+            p: c64::new(g, k),
+            right: Vec::new(),
+            left: Vec::new(),
+        };
+        Track {
+            first,
+            roots: roots.iter().map(root).collect(),
+        }
+    }
+
+    /// A pair that decays where it parts may still diverge within the step; what grew
+    /// already does not begin to.
+    #[test]
+    fn only_what_comes_from_growth_begins_without_a_crossing() {
+        for (damping, expected) in [(0.01, vec![1, 2]), (-0.01, Vec::new())] {
+            let tracks = [
+                track(0, &[(-0.02, 0.1), (damping, 0.05)]),
+                track(2, &[(0.03, 0.0)]),
+                track(2, &[(0.01, 0.0)]),
+            ];
+            let split = Event {
+                turn: Turn::Split,
+                pair: 0,
+                real: vec![1, 2],
+                after: 1,
+            };
+            assert_eq!(from_growth(&tracks, &[split]), expected);
+        }
+        for (damping, expected) in [(0.01, vec![2]), (-0.01, Vec::new())] {
+            let tracks = [
+                track(0, &[(0.02, 0.0)]),
+                track(0, &[(damping, 0.0)]),
+                track(1, &[(0.01, 0.02)]),
+            ];
+            let join = Event {
+                turn: Turn::Join,
+                pair: 2,
+                real: vec![0, 1],
+                after: 0,
+            };
+            assert_eq!(from_growth(&tracks, &[join]), expected);
+        }
+    }
+}

@@ -212,6 +212,25 @@ pub struct Crossing {
     pub shape: Vec<c64>,
 }
 
+impl Crossing {
+    /// Modes, and by how many m/s one per cent more frequency of each moves the crossing,
+    /// $0.01\,f_i\,\partial U/\partial f_i$, the largest first. Empty where derivatives
+    /// were not asked for.
+    pub fn owed_to_frequencies(&self) -> Vec<(&str, f64)> {
+        let mut owed: Vec<(&str, f64)> = self
+            .sensitivities
+            .iter()
+            .flatten()
+            .filter_map(|found| {
+                let mode = found.parameter.strip_prefix("frequency of ")?;
+                Some((mode, 0.01 * found.value? * self.speed))
+            })
+            .collect();
+        owed.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        owed
+    }
+}
+
 /// A real root through zero.
 #[derive(Clone, Debug, Serialize)]
 pub struct Divergence {

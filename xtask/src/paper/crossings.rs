@@ -79,17 +79,8 @@ pub(super) fn table(work: &Work) -> Table {
 
 /// The modes whose frequencies matter most to the speed of a crossing.
 fn sensitivities(crossing: &Crossing) -> String {
-    let mut owed: Vec<(&str, f64)> = crossing
-        .sensitivities
-        .iter()
-        .flatten()
-        .filter_map(|found| {
-            let mode = found.parameter.strip_prefix("frequency of ")?;
-            Some((mode, 0.01 * found.value? * found.speed))
-        })
-        .collect();
-    owed.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let words: Vec<String> = owed
+    let words: Vec<String> = crossing
+        .owed_to_frequencies()
         .iter()
         .take(3)
         .map(|(mode, change)| format!("{mode} {change:+.2}").replace('-', "−"))

@@ -184,17 +184,8 @@ pub(crate) fn sensitivities(console: &Console, best: &MethodResult) {
         ("1 % more frequency of … changes V by … m/s", Align::Left),
     ]);
     for crossing in &best.flutter {
-        let mut owed: Vec<(&str, f64)> = crossing
-            .sensitivities
-            .iter()
-            .flatten()
-            .filter_map(|found| {
-                let mode = found.parameter.strip_prefix("frequency of ")?;
-                Some((mode, 0.01 * found.value? * found.speed))
-            })
-            .collect();
-        owed.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-        let words: Vec<String> = owed
+        let words: Vec<String> = crossing
+            .owed_to_frequencies()
             .iter()
             .take(TOLD)
             .map(|(mode, change)| format!("{mode} {change:+.3}"))
