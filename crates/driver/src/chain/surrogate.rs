@@ -119,9 +119,10 @@ impl Interpolant {
         let mut q = vec![c64::new(0.0, 0.0); rows * columns];
         for (s, factor) in self.support.iter().zip(factors) {
             let factor = factor / divisor;
-            for (sum, column) in q.chunks_exact_mut(rows).zip(s.value.col_iter()) {
-                for (total, value) in sum.iter_mut().zip(column.iter()) {
-                    *total += factor * value;
+            for (j, sum) in q.chunks_exact_mut(rows).enumerate() {
+                for (total, value) in sum.iter_mut().zip(s.value.col_as_slice(j)) {
+                    total.re += factor.re * value.re - factor.im * value.im;
+                    total.im += factor.re * value.im + factor.im * value.re;
                 }
             }
         }
