@@ -157,7 +157,7 @@ pub struct Plan {
 
 /// Seconds of one core at 2.1 GHz with AVX-512; `benches/RESULTS.md` has the measurements.
 /// With sources, tested and multiplied by them.
-const SECONDS_PER_BODY_PAIR: f64 = 11e-9;
+const SECONDS_PER_BODY_PAIR: f64 = 7.5e-9;
 /// Most pairs of the wake are far and taken at few points.
 const SECONDS_PER_WAKE_PAIR: f64 = 1.8e-9;
 const SECONDS_PER_FAR_NODE: f64 = 1.4e-9;
@@ -166,11 +166,13 @@ const SECONDS_PER_TRIANGLE: f64 = 1e-4;
 const SINGLE_FLOPS_PER_SECOND: f64 = 9e10;
 const DOUBLE_FLOPS_PER_SECOND: f64 = 4e10;
 
-/// Of a hierarchical matrix, by n log₂ n: its blocks, making them and the right-hand sides,
-/// all iterations for one right-hand side.
+/// Of the hierarchical operator, by n log₂ n: its entries, and making them and the
+/// right-hand sides.
 const HIERARCHICAL_BYTES: f64 = 5000.0;
-const SECONDS_OF_COMPRESSION: f64 = 5.5e-5;
-const SECONDS_OF_ITERATION: f64 = 6e-7;
+const SECONDS_OF_EVALUATION: f64 = 5.5e-5;
+/// All iterations for one right-hand side, by n to this power: 17 000 to 94 000 unknowns.
+const SECONDS_OF_ITERATION: f64 = 8.2e-10;
+const GROWTH_OF_ITERATION: f64 = 1.95;
 /// A thread's Krylov spaces, by n.
 const KRYLOV_BYTES: f64 = 32.0 * 32.0 * 8.0;
 
@@ -222,7 +224,9 @@ pub fn plan(problem: &Problem<'_>) -> Result<Plan, BemError> {
         ),
         Solver::Hierarchical { .. } => (
             HIERARCHICAL_BYTES * growth + rayon_threads() * KRYLOV_BYTES * n,
-            operators * growth * (SECONDS_OF_COMPRESSION + SECONDS_OF_ITERATION * solved),
+            operators
+                * (growth * SECONDS_OF_EVALUATION
+                    + solved * SECONDS_OF_ITERATION * n.powf(GROWTH_OF_ITERATION)),
         ),
     };
     let held = PARTS_AT_ONCE * CHOSEN + STRIPS_AT_ONCE * STRIP;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 
 /// The whole file.
 #[derive(Clone, Debug, Deserialize)]
@@ -111,17 +112,24 @@ pub(crate) enum ParameterError {
 /// Fewest and most cells in any direction.
 const CELLS: std::ops::RangeInclusive<usize> = 2..=400;
 
+/// A table as it stands in its file.
+///
+/// # Errors
+/// A file that cannot be read, keys not known or missing.
+pub(crate) fn read_table<T: DeserializeOwned>(path: &Path) -> Result<T, ParameterError> {
+    let text = std::fs::read_to_string(path).map_err(|source| ParameterError::File {
+        path: path.to_owned(),
+        source,
+    })?;
+    toml::from_str(&text).map_err(|source| ParameterError::Text {
+        path: path.to_owned(),
+        source: Box::new(source),
+    })
+}
+
 impl Parameters {
     pub(crate) fn read(path: &Path) -> Result<Self, ParameterError> {
-        let text = std::fs::read_to_string(path).map_err(|source| ParameterError::File {
-            path: path.to_owned(),
-            source,
-        })?;
-        let read: Self = toml::from_str(&text).map_err(|source| ParameterError::Text {
-            path: path.to_owned(),
-            source: Box::new(source),
-        })?;
-        read.checked()
+        read_table::<Self>(path)?.checked()
     }
 
     /// Dimensions of which no surface can be made are refused by name.

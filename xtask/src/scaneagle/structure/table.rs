@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::scaneagle::params::ParameterError;
+use crate::scaneagle::params::{ParameterError, read_table};
 
 /// Material and thickness in m, from outside to inside.
 pub(super) type Layers = Vec<(String, f64)>;
@@ -145,14 +145,7 @@ impl Table {
     /// # Errors
     /// A file that cannot be read, keys not known, values no structure can have.
     pub(super) fn read(path: &Path) -> Result<Self, ParameterError> {
-        let text = std::fs::read_to_string(path).map_err(|source| ParameterError::File {
-            path: path.to_owned(),
-            source,
-        })?;
-        let read: Self = toml::from_str(&text).map_err(|source| ParameterError::Text {
-            path: path.to_owned(),
-            source: Box::new(source),
-        })?;
+        let read: Self = read_table(path)?;
         read.check().map_err(ParameterError::Value)?;
         Ok(read)
     }
