@@ -28,6 +28,8 @@ pub(crate) struct Assembly {
     pub(crate) rows: Vec<f64>,
     /// −S σ for every source column.
     pub(crate) right_hand_sides: Mat<f64>,
+    /// [`Totals::slopes`].
+    pub(crate) slopes: Mat<f64>,
     /// Free term c at every test point.
     pub(crate) free_terms: Vec<f64>,
 }
@@ -105,6 +107,7 @@ impl Galerkin {
         Ok(Assembly {
             rows,
             right_hand_sides: totals.right_hand_sides,
+            slopes: totals.slopes,
             free_terms: totals.free_terms,
         })
     }

@@ -14,6 +14,7 @@
 use crate::adjacency::{Adjacency, undirected};
 use crate::body_path::BodyPaths;
 use crate::carry::{CarriedCorner, Carrier, Join};
+use crate::edge_cells::DividedEdge;
 use crate::error::BemError;
 use crate::image::on_plane;
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
@@ -46,6 +47,8 @@ pub(crate) struct CutSurface {
     pub(crate) carried: Vec<CarriedCorner>,
     /// Body lines that end on other trailing edges.
     pub(crate) joins: Vec<Join>,
+    /// Edges that leave trailing edges, divided in `edge_cells`.
+    pub(crate) divided: Vec<DividedEdge>,
 }
 
 /// The sectors of one vertex.
@@ -83,6 +86,7 @@ impl CutSurface {
                 .collect(),
             carried,
             joins,
+            divided: Vec::new(),
         };
         let cuts = Cuts::new(chains, paths);
         let mut sectors: HashMap<u32, Option<Sectors>> = HashMap::new();

@@ -56,6 +56,7 @@ fn direct(problem: &Problem<'_>, p: c64) -> Mat<c64> {
         galerkin: &galerkin,
         wake: &wake,
         free_terms: &assembly.free_terms,
+        slopes: &assembly.slopes,
     };
     let system_at = |s: c64| {
         let tested = influence

@@ -13,6 +13,7 @@
 //! points ([`crate::near_field`]).
 
 use crate::cut::CutSurface;
+use crate::edge_cells::EdgeCells;
 use crate::image::{self, Image};
 use crate::lanes::WIDTH;
 use crate::near_field::{POINTS, TestTriangle};
@@ -64,8 +65,11 @@ pub(crate) struct Galerkin {
     pub(crate) tolerance: f64,
     /// Clusters together, for what is far from them.
     pub(crate) regions: Regions,
-    /// The surface in blocks of close triangles.
+    /// The surface in blocks of close triangles, and behind them the parts of the cells
+    /// along trailing edges.
     pub(crate) blocks: Vec<PanelBlock>,
+    /// What the cells along trailing edges have besides.
+    pub(crate) edge_cells: EdgeCells,
 }
 
 impl Galerkin {
@@ -112,7 +116,8 @@ impl Galerkin {
             })
             .collect();
         let order = spatial_order(&centres, RUNS);
-        let blocks = vertex_blocks(&surface.vertices, &surface.triangles, &order);
+        let mut blocks = vertex_blocks(&surface.vertices, &surface.triangles, &order);
+        let edge_cells = EdgeCells::new(surface, &mut blocks);
         let mut galerkin = Self {
             triangles: surface.triangles.clone(),
             n_vertices,
@@ -132,6 +137,7 @@ impl Galerkin {
             tolerance,
             regions: Regions::default(),
             blocks,
+            edge_cells,
         };
         let is_large = order.len() > EVALUATED_EVERYWHERE;
         galerkin.clusters = order

@@ -72,6 +72,7 @@ struct Entries {
 pub(crate) struct Assembled {
     pub(crate) operator: HierarchicalOperator,
     pub(crate) right_hand_sides: Mat<f64>,
+    pub(crate) slopes: Mat<f64>,
     pub(crate) free_terms: Vec<f64>,
 }
 
@@ -196,6 +197,7 @@ impl HierarchicalOperator {
                 tolerance,
             },
             right_hand_sides: totals.right_hand_sides,
+            slopes: totals.slopes,
             free_terms: totals.free_terms,
         })
     }

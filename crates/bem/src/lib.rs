@@ -47,6 +47,7 @@ mod cut;
 mod dense;
 #[cfg(test)]
 mod direct;
+mod edge_cells;
 mod error;
 mod far_tiles;
 mod far_wake;

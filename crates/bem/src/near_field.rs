@@ -124,6 +124,19 @@ fn change(corners: &[[f64; NEAR_POINTS]; 3]) -> [CornerValues; 3] {
     values
 }
 
+/// Values at the three points with the moments that a function on the triangle has at the
+/// points of the divided one.
+pub(crate) fn point_values(function: impl Fn(&[f64; 3]) -> f64) -> [f64; 3] {
+    let mut moments = [[0.0; 3]; 3];
+    for shape in DIVISION.iter() {
+        let value = function(shape) / DIVIDED as f64;
+        for (moment, weight) in moments.iter_mut().zip(shape) {
+            moment[0] += weight * value;
+        }
+    }
+    from_moments(&moments).map(|values| values[0])
+}
+
 /// D_q = 3 Σᵢ (2 δ_qi − 1/3) mᵢ.
 fn from_moments(moments: &[CornerValues; 3]) -> [CornerValues; 3] {
     std::array::from_fn(|q| {

@@ -36,6 +36,8 @@ pub(crate) struct Body<O> {
     pub(crate) galerkin: Galerkin,
     pub(crate) operator: O,
     pub(crate) free_terms: Vec<f64>,
+    /// What the slopes of jumps add, [`crate::influence::Totals::slopes`].
+    pub(crate) slopes: Mat<f64>,
     /// Potentials of the sources, without wake.
     pub(crate) potentials: Mat<f64>,
     /// A⁻ᵀ K: what a tested influence makes of each jump at the trailing edge.
@@ -110,6 +112,7 @@ impl Prepared<Operator> {
                 galerkin: self.body.galerkin,
                 operator: (),
                 free_terms: self.body.free_terms,
+                slopes: self.body.slopes,
                 potentials: self.body.potentials,
                 jump_adjoint: self.body.jump_adjoint,
             },
@@ -135,6 +138,7 @@ impl<O> Body<O> {
             galerkin: &self.galerkin,
             wake,
             free_terms: &self.free_terms,
+            slopes: &self.slopes,
         }
     }
 }
@@ -147,7 +151,7 @@ impl Body<Operator> {
         solver: Solver,
         progress: &dyn Progress,
     ) -> Result<Self, BemError> {
-        let (operator, mut potentials, free_terms) = match solver {
+        let (operator, mut potentials, slopes, free_terms) = match solver {
             Solver::Hierarchical { tolerance } => {
                 let assembled = HierarchicalOperator::assemble(
                     &galerkin,
@@ -158,6 +162,7 @@ impl Body<Operator> {
                 (
                     Operator::Hierarchical(assembled.operator),
                     assembled.right_hand_sides,
+                    assembled.slopes,
                     assembled.free_terms,
                 )
             }
@@ -168,6 +173,7 @@ impl Body<Operator> {
                 (
                     Operator::Dense(operator),
                     assembly.right_hand_sides,
+                    assembly.slopes,
                     assembly.free_terms,
                 )
             }
@@ -179,6 +185,7 @@ impl Body<Operator> {
             galerkin,
             operator,
             free_terms,
+            slopes,
             potentials,
             jump_adjoint,
         })

@@ -3,6 +3,7 @@
 //! A block of panels goes to the largest regions that are far from it, and to the clusters
 //! in none of them, far or near ([`crate::regions`]).
 
+use crate::edge_cells::EdgeCells;
 use crate::galerkin::Galerkin;
 use crate::panel_block::PanelBlock;
 use crate::receiver::Receiver;
@@ -73,12 +74,13 @@ impl<'a> Received<'a> {
     }
 }
 
-/// Vertices of some blocks, ascending.
-pub(crate) fn columns_of(blocks: &[Placed<'_>]) -> Vec<u32> {
+/// Vertices and slopes of jumps on which the influence of some blocks depends, ascending.
+pub(crate) fn columns_of(blocks: &[Placed<'_>], cells: &EdgeCells) -> Vec<u32> {
     let mut columns: Vec<u32> = blocks
         .iter()
         .flat_map(|placed| &placed.block.columns)
-        .copied()
+        .flat_map(|&column| cells.made_of(column))
+        .map(|(v, _)| v)
         .collect();
     columns.sort_unstable();
     columns.dedup();

@@ -261,6 +261,7 @@ mod tests {
                     galerkin,
                     wake: &wake,
                     free_terms: &free,
+                    slopes: &without.slopes,
                 };
                 let blocks = influence.blocks(left.as_ref(), &Silent).expect("blocks");
                 let steady = influence.steady(columns, &Silent).expect("steady");

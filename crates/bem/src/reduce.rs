@@ -60,6 +60,7 @@ impl Reduction<'_> {
             c1: functionals.c1.iter().map(block).collect(),
             c0: functionals.c0.iter().map(block).collect(),
             near: near_blocks(self.wake, &blocks.near),
+            slopes: block(&blocks.slopes),
             oscillating: far(&paths.oscillating, &blocks.far[0]),
             decaying: far(&paths.decaying, &blocks.far[1]),
         }

@@ -139,6 +139,7 @@ fn residual(
             galerkin: &galerkin,
             wake: &wake,
             free_terms: &assembly.free_terms,
+            slopes: &assembly.slopes,
         };
         residual -= influence.steady(steady.jumps.nrows(), &Silent)? * &steady.jumps;
     }

@@ -310,12 +310,16 @@ impl TileScratch {
             if !seen.is_near(block) {
                 continue;
             }
+            // Hat functions of divided edges are no part of a constant potential.
+            let is_whole = !block.triangles.is_empty();
             for (lane, &t) in group.triangles.iter().enumerate() {
                 let test = &tests[t as usize];
                 for panel in test.near(&block.spheres) {
                     let change = test.change(&block.near(self.arch, panel, &test.near_points));
                     for q in 0..3 {
-                        sums[q][lane] += change.doublets[q].iter().sum::<f64>();
+                        if is_whole {
+                            sums[q][lane] += change.doublets[q].iter().sum::<f64>();
+                        }
                         for c in 0..3 {
                             let at = block.place(panel, c) * WIDTH + lane;
                             doublets[q][at] += change.doublets[q][c];

@@ -3,7 +3,7 @@
 //! With A₀ the body operator, K the selector κ = Kᵀφ, W(s) = Σ_r e^{−sξ_r} W_r the wake and
 //! L = A₀⁻ᵀ [K, P0, P1], everything of the size of the mesh is contracted once:
 //!
-//! H(s) = Σ_r e^{−sξ_r} Lᵀ T W_r, b(s) = A₀⁻¹(−S[σ(s)]) = s b₁ + b₀,
+//! H(s) = Σ_r e^{−sξ_r} Lᵀ T W_r + s E, b(s) = A₀⁻¹(−S[σ(s)]) = s b₁ + b₀,
 //! κ(s) = (I − H_K)⁻¹ Kᵀ b(s),
 //! Q(s) = 2 { [P0 + s P1]ᵀ b(s) + [H_P0 + s H_P1] κ(s) + s C1 + C0 }.
 //!
@@ -51,6 +51,8 @@ pub struct TransferModel {
     pub(crate) c0: Vec<Block>,
     /// Functionals: columns, then modes of P0 for each onset, then modes of P1.
     pub(crate) near: NearBlocks,
+    /// By s: slopes of the jumps at trailing edges.
+    pub(crate) slopes: Block,
     pub(crate) oscillating: FarBlocks,
     pub(crate) decaying: FarBlocks,
 }
@@ -101,6 +103,7 @@ impl TransferModel {
             && all(&self.c1, onsets, m)
             && all(&self.c0, onsets * onsets, m)
             && self.near.is_sound(f, n)
+            && self.slopes.is_sound(f, n)
             && self.oscillating.is_sound(f, n)
             && self.decaying.is_sound(f, n)
     }
@@ -238,8 +241,9 @@ impl TransferModel {
         let mut h = Mat::<f64>::zeros(f * self.columns, 2);
         self.far(s).add(s, &mut h);
         self.near.add(s, f, &mut h);
+        let slopes = self.slopes.view();
         Mat::from_fn(f, self.columns, |i, j| {
-            c64::new(h[(j * f + i, 0)], h[(j * f + i, 1)])
+            s * slopes[(i, j)] + c64::new(h[(j * f + i, 0)], h[(j * f + i, 1)])
         })
     }
 

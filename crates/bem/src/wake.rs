@@ -8,6 +8,7 @@ use crate::adjacency::Adjacency;
 use crate::body_path::Tracer;
 use crate::contour::Paths;
 use crate::cut::CutSurface;
+use crate::edge_cells::divided_edges;
 use crate::error::BemError;
 use crate::far_wake::FarWake;
 use crate::image::Image;
@@ -129,7 +130,8 @@ pub(crate) fn cut_and_wake(
     };
     let half = image != Image::None;
     let paths = tracer.trace()?;
-    let surface = CutSurface::new(mesh, &adjacency, chains, &paths, half)?;
+    let mut surface = CutSurface::new(mesh, &adjacency, chains, &paths, half)?;
+    surface.divided = divided_edges(&surface, chains, direction, half);
     let strikes = Strikes {
         mesh,
         adjacency: &adjacency,

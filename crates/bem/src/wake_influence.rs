@@ -30,6 +30,8 @@ pub(crate) struct WakeBlocks {
     /// One a path: functionals × (streamlines × nodes × 2), real and imaginary part beside
     /// each other, weights of the path included.
     pub(crate) far: Vec<Mat<f64>>,
+    /// −Lᵀ of the slopes: functionals × columns, by s.
+    pub(crate) slopes: Mat<f64>,
 }
 
 /// Evaluates a wake over a surface.
@@ -37,6 +39,9 @@ pub(crate) struct WakeInfluence<'a> {
     pub(crate) galerkin: &'a Galerkin,
     pub(crate) wake: &'a Wake,
     pub(crate) free_terms: &'a [f64],
+    /// What the slopes of the jumps, s κ, add to the body's rows: it is moved over to the
+    /// wake, s being no part of the body's operator.
+    pub(crate) slopes: &'a Mat<f64>,
 }
 
 impl WakeInfluence<'_> {
@@ -61,6 +66,11 @@ impl WakeInfluence<'_> {
     ) -> Result<Mat<c64>, BemError> {
         let mut rows = self.near_rows(columns, |slot| (-s * slot.xi).exp(), progress)?;
         rows += self.far_rows(s, columns, progress)?;
+        for j in 0..columns {
+            for i in 0..rows.nrows() {
+                rows[(i, j)] -= s * self.slopes[(i, j)];
+            }
+        }
         Ok(rows)
     }
 
@@ -121,6 +131,7 @@ impl WakeInfluence<'_> {
         Ok(WakeBlocks {
             near,
             far: self.far_blocks(&lefts, left.ncols(), progress)?,
+            slopes: -(left.transpose() * self.slopes),
         })
     }
 

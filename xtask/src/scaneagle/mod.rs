@@ -4,6 +4,7 @@
 mod body;
 mod params;
 mod plane;
+mod spacing;
 mod structure;
 mod surface;
 mod wing;

@@ -6,11 +6,12 @@
 //! diagonal with the larger least angle. Points of the plane of symmetry are shared.
 
 use fladder_mesh::{CurveGroup, SurfaceGroup, TriMesh, Vec3};
-use libm::{atan2, cos, sin, sqrt};
+use libm::{atan2, sqrt};
 
 use super::body::{Body, root};
 use super::params::{Parameters, Size};
 use super::plane::Plane;
+use super::spacing::{Ring, sections};
 use super::wing::Wing;
 
 /// Groups of the starboard half by number; port ones end in `l`.
@@ -49,76 +50,6 @@ pub(crate) fn surface(parameters: &Parameters, size: Size) -> Result<TriMesh, Su
         return Err(SurfaceError::TooLarge(count));
     }
     Ok(mirrored(&half))
-}
-
-/// Places round a section: along the chord, and 1 above, −1 below, 0 at the edges.
-struct Ring {
-    place: Vec<f64>,
-    side: Vec<f64>,
-}
-
-impl Ring {
-    fn new(cells: usize, hinge: f64) -> Self {
-        let aft = ((cells as f64 * 0.27).round_ties_even() as usize).max(2);
-        let fore = cells - aft;
-        let quarter = std::f64::consts::FRAC_PI_2;
-        let towards_nose = (0..=fore).map(|i| {
-            let t = i as f64 / fore as f64;
-            hinge * (0.75 * (1.0 - cos(quarter * t)) + 0.25 * t)
-        });
-        let towards_tail = (1..=aft).map(|i| {
-            let t = i as f64 / aft as f64;
-            hinge + (1.0 - hinge) * (0.35 * sin(quarter * t) + 0.65 * t)
-        });
-        let chord: Vec<f64> = towards_nose.chain(towards_tail).collect();
-        let below = chord.iter().rev().copied();
-        let above = chord[1..cells].iter().copied();
-        let mut side = vec![-1.0; cells];
-        side[0] = 0.0;
-        side.push(0.0);
-        side.resize(2 * cells, 1.0);
-        Self {
-            place: below.chain(above).collect(),
-            side,
-        }
-    }
-
-    fn len(&self) -> usize {
-        self.place.len()
-    }
-}
-
-/// Arc lengths of plane sections, with one narrow cell at each end of a control.
-fn sections(parameters: &Parameters, wing: &Wing<'_>, step: f64) -> Vec<f64> {
-    let gap = parameters.controls.gap / 2.0;
-    let [e0, e1] = parameters.controls.elevon;
-    let [r0, r1] = wing.rudder();
-    let [begin, end, tip] = wing.marks;
-    // Ends of stretches, and the length of their cells in steps; 0: one cell.
-    let stretches = [
-        (e0 - gap, 1.0),
-        (e0 + gap, 0.0),
-        (e1 - gap, 1.0),
-        (e1 + gap, 0.0),
-        (begin, 0.5),
-        (end, 0.45),
-        (r0 - gap, 0.5),
-        (r0 + gap, 0.0),
-        (r1 - gap, 0.6),
-        (r1 + gap, 0.0),
-        (tip, 0.4),
-    ];
-    let mut out = vec![parameters.junction.blend_to];
-    for (to, steps) in stretches {
-        let from = out[out.len() - 1];
-        let cells = if steps == 0.0 {
-            1
-        } else {
-            (((to - from) / (step * steps)).round_ties_even() as usize).max(1)
-        };
-        out.extend((1..=cells).map(|i| from + (to - from) * i as f64 / cells as f64));
-    }
-    out
 }
 
 fn half(parameters: &Parameters, size: Size) -> Result<Half, SurfaceError> {
@@ -203,8 +134,9 @@ fn group_of(
     let place = 0.5 * (ring.place[places[0]] + ring.place[places[1]]);
     let mean = |list: &[f64]| list.iter().sum::<f64>() / list.len() as f64;
     let s = 0.5 * (mean(&rings[0]) + mean(&rings[1]));
-    let gap = parameters.controls.gap;
-    let within = |[low, high]: [f64; 2]| low - gap < s && s < high + gap;
+    // Halfway between the edge of the strip and its middle: whatever is beside it is outside.
+    let reach = 0.25 * parameters.controls.gap;
+    let within = |[low, high]: [f64; 2]| low - reach < s && s < high + reach;
     if place > parameters.controls.hinge {
         if within(parameters.controls.elevon) {
             return 1;

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 /// Word of meaning of stored forces. It changes when the same inputs would
 /// give other numbers, or when the layout of what is stored changes.
-const MEANING: &str = "gaf/5";
+const MEANING: &str = "gaf/6";
 
 /// An entry of the cache.
 #[derive(Clone, Debug, Serialize, Deserialize)]
