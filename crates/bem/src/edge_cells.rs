@@ -34,6 +34,12 @@ const ON_EDGE: f64 = 1e-12;
 /// pass between the two.
 const BETWEEN: f64 = 1e-6;
 
+/// Distance from an edge's middle, in its lengths, within which its line is gone on along.
+const BESIDE: f64 = 1.5;
+
+/// Largest ratio of distances over which the power law is gone on along.
+const ALIKE: f64 = 2.0;
+
 /// Cosine of the angle between normals up to which triangles belong to the same side.
 const SAME_SIDE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
@@ -379,6 +385,11 @@ impl Deviation {
         let weights = [1.0 - part, part];
         let foot = weights[0] * at(side.ends[0]) + weights[1] * at(side.ends[1]);
         let distance = (foot - at(vertex)).dot(&stream);
+        // Not so of an edge along the stream, or of a vertex far beside all edges.
+        let is_downstream = distance > 0.0 && from_middle(part) < BESIDE;
+        if !is_downstream {
+            return None;
+        }
         let jumps = &surface.chain_jumps[side.chain][side.edge..=side.edge + 1];
         let slope = 0.5 * side.sign * distance;
         Some(Self {
@@ -398,7 +409,8 @@ impl Deviation {
     }
 
     /// Half of its difference from that on the other side at the same place, which is the
-    /// jump's; of those beside the place by the power law where the meshes do not match.
+    /// jump's; of those beside the place by the power law where the meshes do not match,
+    /// itself where they are all too unlike.
     fn of_jump(&self, all: &BTreeMap<u32, Self>) -> (Vec<(u32, f64)>, Jump) {
         let mut others: Vec<&Self> = all
             .values()
@@ -420,9 +432,16 @@ impl Deviation {
             (Some(only), None) | (None, Some(only)) => vec![(only, 1.0)],
             (None, None) => return (self.vertices.clone(), self.slope.clone()),
         };
+        let ratio = |other: &Self| self.distance / other.distance;
+        if beside
+            .iter()
+            .any(|(o, _)| !(1.0 / ALIKE..=ALIKE).contains(&ratio(o)))
+        {
+            return (self.vertices.clone(), self.slope.clone());
+        }
         let shares = beside.into_iter().map(|(other, weight)| {
-            let reach = (self.distance / other.distance).max(0.0);
-            (other, -0.5 * weight * reach * reach.sqrt())
+            let ratio = ratio(other);
+            (other, -0.5 * weight * ratio * ratio.sqrt())
         });
         let (mut vertices, mut slope) = (Vec::new(), Jump::new());
         for (deviation, share) in std::iter::once((self, 0.5)).chain(shares) {
