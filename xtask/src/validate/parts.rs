@@ -40,7 +40,7 @@ const STEADY: Goals = Goals {
 /// Cells of the fine wings: the first about as long as the nose radius of a 3 % section.
 const WING: Cells = Cells {
     chord: 48,
-    half_span: 20,
+    half_span: 24,
     nose: 0.4,
 };
 
