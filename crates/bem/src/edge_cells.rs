@@ -37,6 +37,9 @@ const BETWEEN: f64 = 1e-6;
 /// Distance from an edge's middle, in its lengths, within which its line is gone on along.
 const BESIDE: f64 = 1.5;
 
+/// Largest ratio of distances over which the power law is gone on along.
+const ALIKE: f64 = 2.0;
+
 /// Cosine of the angle between normals up to which triangles belong to the same side.
 const SAME_SIDE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
@@ -405,20 +408,43 @@ impl Deviation {
         })
     }
 
-    /// Half of its difference from that opposite on the other side, which is the jump's;
-    /// itself where the meshes of the two sides do not match.
+    /// Half of its difference from that on the other side at the same place, which is the
+    /// jump's; of those beside the place by the power law where the meshes do not match,
+    /// itself where they are all too unlike.
     fn of_jump(&self, all: &BTreeMap<u32, Self>) -> (Vec<(u32, f64)>, Jump) {
-        let is_opposite = |other: &&Self| {
-            other.chain == self.chain
-                && other.sign != self.sign
-                && (other.place - self.place).abs() < BETWEEN
-                && (other.distance - self.distance).abs() < BETWEEN * self.distance
+        let mut others: Vec<&Self> = all
+            .values()
+            .filter(|o| o.chain == self.chain && o.sign != self.sign)
+            .collect();
+        others.sort_by(|a, b| a.place.total_cmp(&b.place));
+        let is_opposite = |o: &&&Self| {
+            (o.place - self.place).abs() < BETWEEN
+                && (o.distance - self.distance).abs() < BETWEEN * self.distance.abs()
         };
-        let Some(other) = all.values().find(is_opposite) else {
+        let next = others.partition_point(|o| o.place < self.place);
+        let (before, after) = others.split_at(next);
+        let beside: Vec<(&Self, f64)> = match (before.last(), after.first()) {
+            _ if let Some(opposite) = others.iter().find(is_opposite) => vec![(opposite, 1.0)],
+            (Some(before), Some(after)) => {
+                let part = (self.place - before.place) / (after.place - before.place);
+                vec![(before, 1.0 - part), (after, part)]
+            }
+            (Some(only), None) | (None, Some(only)) => vec![(only, 1.0)],
+            (None, None) => return (self.vertices.clone(), self.slope.clone()),
+        };
+        let ratio = |other: &Self| self.distance / other.distance;
+        if beside
+            .iter()
+            .any(|(o, _)| !(1.0 / ALIKE..=ALIKE).contains(&ratio(o)))
+        {
             return (self.vertices.clone(), self.slope.clone());
-        };
+        }
+        let shares = beside.into_iter().map(|(other, weight)| {
+            let ratio = ratio(other);
+            (other, -0.5 * weight * ratio * ratio.sqrt())
+        });
         let (mut vertices, mut slope) = (Vec::new(), Jump::new());
-        for (deviation, share) in [(self, 0.5), (other, -0.5)] {
+        for (deviation, share) in std::iter::once((self, 0.5)).chain(shares) {
             vertices.extend(deviation.vertices.iter().map(|(v, w)| (*v, share * w)));
             slope.extend(deviation.slope.iter().map(|(c, w)| (*c, share * w)));
         }
