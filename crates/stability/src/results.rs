@@ -223,7 +223,7 @@ impl Crossing {
             .flatten()
             .filter_map(|found| {
                 let mode = found.parameter.strip_prefix("frequency of ")?;
-                Some((mode, 0.01 * found.value? * self.speed))
+                Some((mode, 0.01 * found.value? * found.speed))
             })
             .collect();
         owed.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));

@@ -49,7 +49,8 @@ fn wing_parameters(wing: &Wing) -> Vec<(Parameter, f64)> {
     let mut found = Vec::new();
     for mode in [0, 1, 4] {
         let place = (6 + mode, 6 + mode);
-        let mut frequency = Parameter::new("frequency", "Hz", 26);
+        let mut frequency = Parameter::new(format!("frequency of {mode}"), "Hz", 26);
+        frequency.value = Some(omega[mode] / std::f64::consts::TAU);
         frequency.stiffness[place] = c64::new(2.0 * omega[mode] * std::f64::consts::TAU, 0.0);
         found.push((frequency, 1e-3));
         let mut damping = Parameter::new("damping", "1", 26);
@@ -121,6 +122,7 @@ fn flutter_sensitivities_agree_with_differences() {
     let base = polished(&wing, &points, &wing, &smooth, &parameters);
     assert_eq!(base.flutter.len(), 4);
     let mut worst: f64 = 0.0;
+    let mut n_frequencies = 0;
     for (index, (parameter, step)) in with_steps.iter().enumerate() {
         let moved = |amount: f64| {
             let changed = Changed {
@@ -145,12 +147,22 @@ fn flutter_sensitivities_agree_with_differences() {
                 .max((ours.frequency_hz - hertz).abs() / scale(hertz));
             worst = worst.max(miss);
             println!(
-                "{:9} flutter {number}: {:+.5} m/s per {}, difference {speed:+.5}; {:+.5} Hz, difference {hertz:+.5}",
+                "{:14} flutter {number}: {:+.5} m/s per {}, difference {speed:+.5}; {:+.5} Hz, difference {hertz:+.5}",
                 parameter.name, ours.speed, parameter.unit, ours.frequency_hz
             );
             assert!(miss < 1e-4, "{miss:.1e}");
+            // What the tables say of a frequency is the same derivative, per cent of it.
+            let Some(mode) = parameter.name.strip_prefix("frequency of ") else {
+                continue;
+            };
+            let owed = crossing.owed_to_frequencies();
+            let (_, shown) = owed.iter().find(|(name, _)| *name == mode).unwrap();
+            assert!((shown - 0.01 * ours.value.unwrap() * speed).abs() < 1e-4 * scale(*shown));
+            assert!(owed.is_sorted_by(|a, b| a.1.abs() >= b.1.abs()));
+            n_frequencies += 1;
         }
     }
+    assert!(n_frequencies > 0);
     println!("largest relative difference {worst:.1e}");
 }
 
