@@ -77,7 +77,7 @@ impl<'a> Adjacency<'a> {
     }
 
     /// The corner of a triangle that is neither `a` nor `b`.
-    fn third(&self, triangle: u32, a: u32, b: u32) -> Option<u32> {
+    pub(crate) fn third(&self, triangle: u32, a: u32, b: u32) -> Option<u32> {
         self.corners(triangle)
             .into_iter()
             .find(|&v| v != a && v != b)

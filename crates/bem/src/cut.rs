@@ -14,7 +14,7 @@
 use crate::adjacency::{Adjacency, undirected};
 use crate::body_path::BodyPaths;
 use crate::carry::{CarriedCorner, Carrier, Join};
-use crate::edge_cells::DividedEdge;
+use crate::divided_edges::DividedEdge;
 use crate::error::BemError;
 use crate::image::on_plane;
 use fladder_mesh::{TrailingEdge, TriMesh, Vec3};
@@ -47,7 +47,7 @@ pub(crate) struct CutSurface {
     pub(crate) carried: Vec<CarriedCorner>,
     /// Body lines that end on other trailing edges.
     pub(crate) joins: Vec<Join>,
-    /// Edges that leave trailing edges, divided in `edge_cells`.
+    /// Edges that leave trailing edges, divided in [`crate::edge_cells`].
     pub(crate) divided: Vec<DividedEdge>,
 }
 

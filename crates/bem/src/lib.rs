@@ -47,6 +47,7 @@ mod cut;
 mod dense;
 #[cfg(test)]
 mod direct;
+mod divided_edges;
 mod edge_cells;
 mod error;
 mod far_tiles;

@@ -8,7 +8,7 @@ use crate::adjacency::Adjacency;
 use crate::body_path::Tracer;
 use crate::contour::Paths;
 use crate::cut::CutSurface;
-use crate::edge_cells::divided_edges;
+use crate::divided_edges::divided_edges;
 use crate::error::BemError;
 use crate::far_wake::FarWake;
 use crate::image::Image;

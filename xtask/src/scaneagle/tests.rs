@@ -52,6 +52,49 @@ fn the_surface_is_that_of_another_program() {
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
     println!("vertices of another program: {largest:.1e} m from the surface, mean {mean:.1e}");
     assert!(largest < 1.5e-3 && mean < 1e-4);
+    // The spinner is round over 50 mm and has few cells.
+    let spinner = parameters.fuselage.length - parameters.fuselage.spinner;
+    let elsewhere = other.vertices.iter().zip(&distances);
+    assert!(
+        elsewhere
+            .filter(|(p, _)| p.x < spinner)
+            .all(|(_, d)| *d < 6e-4)
+    );
+}
+
+/// Controls reach to the same places on every mesh: the outer edges of the strips that shear.
+#[test]
+fn controls_are_as_large_on_every_mesh() {
+    let parameters = parameters();
+    let extent = |size: &str, group: &str| {
+        let made = surface(&parameters, parameters.size[size]).unwrap();
+        let own = made.surfaces.iter().find(|own| own.name == group).unwrap();
+        let points = own
+            .triangles
+            .iter()
+            .flat_map(|t| made.triangles[*t as usize])
+            .map(|v| made.vertices[v as usize]);
+        // Along the wing for elevons, up for rudders.
+        let along = points.map(|p| {
+            if group.starts_with("elevon") {
+                p.y
+            } else {
+                p.z
+            }
+        });
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(x), high.max(x)]
+        })
+    };
+    for group in ["elevon_r", "rudder_r"] {
+        let coarse = extent("3k", group);
+        for size in ["10k", "34k"] {
+            let fine = extent(size, group);
+            println!("{group}: {coarse:.5?} m on 3k, {fine:.5?} m on {size}");
+            let off = [0, 1].map(|end| (coarse[end] - fine[end]).abs());
+            assert!(off.iter().all(|off| *off < 1e-9), "{off:?}");
+        }
+    }
 }
 
 /// Distance of a point from a triangle.
